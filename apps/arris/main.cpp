@@ -1,0 +1,8 @@
+#include <cstdio>
+
+#include "arris/version.h"
+
+int main() {
+  std::printf("arris %s\n", arris::version());
+  return 0;
+}

@@ -1,0 +1,43 @@
+// io.h — files in, files out
+// Errors     arris::Error: kind input for what is wrong in a file, kind failed for what the machine
+//            can't do (disk full, permission)
+// Guarantee  a saved file appears whole or not at all: it is written beside its place and renamed
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "arris/image.h"
+#include "arris/scene.h"
+
+namespace arris {
+
+// By extension: .stl .obj .ply .off .gltf .glb .toml. Throws Error.
+Scene load_scene(const std::filesystem::path& path);
+
+// The extensions that load_scene() takes, with the dot.
+std::vector<std::string> scene_extensions();
+
+// .png .jpg .jpeg .exr .pfm .hdr; 8-bit files are decoded to linear. An EXR's extra channels become layers.
+Picture load_picture(const std::filesystem::path& path);
+
+struct SaveOptions {
+  double exposure = 0;       // stops; 8-bit formats only
+  bool tone_map = true;      // false: clip (8-bit formats only)
+  int jpeg_quality = 92;
+  // String attributes of an EXR file: what part of which render it holds.
+  std::vector<std::pair<std::string, std::string>> attributes;
+};
+
+// .png .jpg .exr .pfm by extension. Layers go into EXR files as channels "name.R", … and beside other
+// formats as files of their own: out.png → out.albedo.png (normal, depth, … as .pfm values mapped to 0..1 is
+// not done: layers of .png and .jpg are written as .pfm, out.albedo.pfm).
+void save_picture(const Picture& picture, const std::filesystem::path& path, const SaveOptions& options = {});
+
+// The scene-referred to display curve of 8-bit output: linear RGB in, sRGB-encoded 0..1 out.
+Rgb tone_map(Rgb linear, double exposure);
+
+}  // namespace arris

@@ -1,0 +1,92 @@
+// render.h — from a scene to a picture
+// What       prepare_scene() builds everything that depends on geometry, once; renderers share the
+//            result and only read it. A renderer turns it into pictures.
+// Guarantee  same scene, options and sample range: same bytes, at any number of threads
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "arris/image.h"
+#include "arris/scene.h"
+
+namespace arris {
+
+// Everything that is wrong with a scene, one line each; empty if nothing is.
+std::vector<std::string> validate_scene(const Scene& scene);
+
+struct PrepareOptions {
+  int threads = 0;  // 0: all
+  // The camera and picture size decide automatic radii; the scene's own if empty.
+};
+
+class PreparedScene;
+// Throws Error with every problem of validate_scene() and of the rounding.
+std::shared_ptr<const PreparedScene> prepare_scene(Scene scene, const PrepareOptions& options = {});
+
+// What rounding did to one object.
+struct RoundingSummary {
+  std::string object;
+  double radius = 0;  // world units; 0: not rounded
+  std::uint64_t edges = 0, corners = 0;
+  std::vector<std::string> notes;  // "not convex: rounded along its 12 convex edges only", …
+};
+
+struct PrepareStats {
+  double build_seconds = 0, round_seconds = 0;
+  std::uint64_t triangles = 0, objects = 0;
+  std::uint64_t rounded_edges = 0, rounded_corners = 0;
+  std::uint64_t geometry_bytes = 0, rounding_bytes = 0;
+  std::vector<RoundingSummary> rounding;
+};
+const PrepareStats& prepare_stats(const PreparedScene& prepared);
+const Scene& scene_of(const PreparedScene& prepared);  // with camera and environment filled in
+
+// Half-open range of the sample sequence. Two parts A..B and B..C, averaged with their counts as weights,
+// are the render A..C.
+struct SampleRange {
+  std::uint32_t first = 0, last = 64;
+};
+
+struct Progress {
+  double done = 0;  // 0..1
+  double elapsed_seconds = 0;
+};
+
+struct RenderOptions {
+  SampleRange samples;
+  double time_limit_seconds = 0;  // 0: none; the render ends after the sample pass under way
+  std::uint32_t seed = 0;
+  int threads = 0;  // 0: all
+  std::vector<std::string> aovs;  // albedo normal depth object rounded
+  const std::atomic<bool>* stop = nullptr;  // set from any thread; the render ends after the pass under way
+  std::function<void(const Progress&)> on_progress;  // from one thread at a time
+};
+
+struct RayCounts {
+  std::uint64_t camera = 0, total = 0;
+  std::uint64_t rounded = 0;  // rays whose hit was on, or that passed through, a rounded edge or corner
+};
+
+struct RenderResult {
+  Picture picture;
+  SampleRange samples;  // what was rendered: shorter than asked for if stopped
+  RayCounts rays;
+  double seconds = 0;
+};
+
+class Renderer {
+ public:
+  virtual ~Renderer() = default;
+  // AOV names it can fill.
+  [[nodiscard]] virtual std::vector<std::string> aovs() const = 0;
+  [[nodiscard]] virtual RenderResult render(const PreparedScene& scene, const RenderOptions& options) const = 0;
+};
+
+std::unique_ptr<Renderer> make_path_renderer();
+
+}  // namespace arris

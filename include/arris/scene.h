@@ -1,0 +1,201 @@
+// scene.h — the scene as plain structs with ids
+// What       what a file describes, before anything is built from it. Readers fill it,
+//            validate_scene() checks it, prepare_scene() makes the renderer's structures.
+// Units      scene units for lengths, radians, linear RGB, W/(m² sr); other units carry a suffix.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <memory>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "arris/math.h"
+
+namespace arris {
+
+// Index into one of the scene's arrays; the tag keeps the arrays apart.
+template <class Tag>
+struct Id {
+  std::uint32_t index = 0;
+  friend constexpr auto operator<=>(Id, Id) = default;
+};
+using MeshId = Id<struct MeshTag>;
+using MaterialId = Id<struct MaterialTag>;
+using TextureId = Id<struct TextureTag>;
+using ObjectId = Id<struct ObjectTag>;
+
+// Triangles in object space. Positions need not be welded: preparation welds them into solids.
+struct Mesh {
+  std::string name;
+  std::vector<Vec3f> positions;
+  std::vector<Triangle> triangles;
+  std::vector<Vec3f> normals;  // unit, one per position, or empty: flat shading
+  std::vector<Vec2f> uvs;      // one per position, or empty
+  std::vector<MaterialId> triangle_materials;  // one per triangle, or empty: the object's
+};
+
+// 8-bit texels, row 0 at the top. uv (0,0) is the upper left corner (glTF's convention;
+// the OBJ reader flips v).
+struct Texture {
+  enum class Wrap { repeat, mirror, clamp };
+  std::string name;
+  int width_px = 0;
+  int height_px = 0;
+  std::vector<std::array<std::uint8_t, 4>> texels;
+  bool srgb = false;  // colour textures: decode R, G, B to linear; alpha always is linear
+  Wrap wrap_u = Wrap::repeat;
+  Wrap wrap_v = Wrap::repeat;
+};
+
+// glTF 2.0 metallic-roughness with ior, specular, transmission, clearcoat and emission. Textures
+// multiply the factor beside them; channels as in glTF.
+struct Material {
+  std::string name;
+  Rgb base_color{0.8F, 0.8F, 0.8F};
+  float metallic = 0;
+  float roughness = 0.5F;
+  float ior = 1.5F;
+  float specular = 1;
+  Rgb specular_color{1, 1, 1};
+  float transmission = 0;
+  float clearcoat = 0;
+  float clearcoat_roughness = 0;
+  Rgb emission{0, 0, 0};  // radiance
+  float opacity = 1;      // glTF alpha; below 1 the surface lets that share of light straight through
+  std::optional<float> alpha_cutoff;  // glTF alphaMode MASK
+  float normal_scale = 1;
+  // If set, the material is the plain mix (1-w)·Lambert(base_color) + w·GGX(white, roughness), with
+  // no Fresnel: Cycles' Diffuse and Glossy nodes under a Mix node. Metallic, ior, … are ignored.
+  std::optional<float> glossy_mix;
+
+  std::optional<TextureId> base_color_texture;          // RGB, A = opacity
+  std::optional<TextureId> metallic_roughness_texture;  // G roughness, B metallic
+  std::optional<TextureId> emission_texture;            // RGB
+  std::optional<TextureId> normal_texture;              // tangent space
+  std::optional<TextureId> transmission_texture;        // R
+  std::optional<TextureId> clearcoat_texture;           // R
+  std::optional<TextureId> clearcoat_roughness_texture;  // G
+};
+
+// The rounding radius of an object, in world units whatever the instance's scale.
+struct AutoRadius {};               // reads well at the picture's size, fits the part
+struct PercentOfInradius {
+  double percent = 10;
+};
+using Radius = std::variant<AutoRadius, double, PercentOfInradius>;
+
+enum class RoundEdges { convex, concave, both };
+enum class RoundMethod { none, exact, shader, mesh };
+
+// The bevel shader's parameters (Anders; names as in the blog). Lengths in world units.
+struct BevelShaderSettings {
+  std::optional<double> delta;    // depth of the sampling origin; empty: the rounding radius
+  std::optional<double> perturb;  // spread of the directions around N; empty: 1
+  int divisions = 3;              // Divisions³ rays
+};
+
+struct RoundingSettings {
+  RoundMethod method = RoundMethod::none;
+  Radius radius = AutoRadius{};
+  RoundEdges edges = RoundEdges::convex;
+  double min_angle = radians(30);  // turns below are part of a smooth surface
+  int subdivisions = 3;            // method mesh
+  BevelShaderSettings shader;      // method shader
+};
+
+struct Object {
+  std::string name;
+  MeshId mesh;
+  MaterialId material;
+  Affine3d world_from_object;
+  std::optional<RoundingSettings> rounding;  // empty: the scene's default
+};
+
+struct Camera {
+  Vec3d position;
+  Vec3d target;
+  Vec3d up{0, 0, 1};
+  double fov_deg = 35;  // vertical
+};
+
+struct PointLight {
+  Vec3d position;
+  Rgb intensity{1, 1, 1};  // W/sr
+};
+struct SpotLight {
+  Vec3d position;
+  Vec3d direction{0, 0, -1};  // away from the light; need not be unit
+  Rgb intensity{1, 1, 1};     // W/sr on the axis
+  double inner_angle = 0;     // from the axis; full intensity inside
+  double outer_angle = kPi / 4;
+};
+struct DirectionalLight {
+  Vec3d direction{0, 0, -1};  // in which the light travels
+  Rgb irradiance{1, 1, 1};    // W/m² on a surface that faces it
+};
+// Emits from the side of cross(edge_u, edge_v).
+struct AreaLight {
+  Vec3d corner;
+  Vec3d edge_u{1, 0, 0};
+  Vec3d edge_v{0, 1, 0};
+  Rgb radiance{1, 1, 1};
+  bool visible_to_camera = true;
+};
+using Light = std::variant<PointLight, SpotLight, DirectionalLight, AreaLight>;
+
+struct ConstantEnvironment {
+  Rgb radiance{0, 0, 0};
+};
+// Clear sky after Preetham, Shirley and Smits, "A Practical Analytic Model for Daylight" (1999), with its sun.
+struct SkyEnvironment {
+  Vec3d sun_direction{0.4, -0.5, 0.77};  // towards the sun; need not be unit
+  double turbidity = 3;
+  double strength = 1;
+  bool sun = true;
+  Vec3d up{0, 0, 1};
+};
+// Equirectangular map; the centre column looks along -Y-of-map … see docs/scene-format.md.
+struct HdrEnvironment {
+  std::string name;
+  int width_px = 0;
+  int height_px = 0;
+  std::vector<Rgb> radiance;  // row 0 is the zenith
+  double strength = 1;
+  double rotation = 0;  // about up
+  Vec3d up{0, 0, 1};
+};
+// Soft three-light room for product pictures; the program's default.
+struct StudioEnvironment {
+  double strength = 1;
+  Vec3d up{0, 0, 1};
+};
+using Environment = std::variant<ConstantEnvironment, SkyEnvironment, HdrEnvironment, StudioEnvironment>;
+
+struct ImageSettings {
+  int width_px = 1280;
+  int height_px = 720;
+  int samples_per_pixel = 64;
+  int max_depth = 8;          // path vertices after the camera's
+  double exposure = 0;        // stops, applied before tone mapping
+  enum class Filter { box, tent, gaussian, blackman_harris } filter = Filter::blackman_harris;
+};
+
+struct Scene {
+  std::string name;
+  std::vector<Mesh> meshes;
+  std::vector<Material> materials;  // never empty after load
+  std::vector<Texture> textures;
+  std::vector<Object> objects;
+  std::vector<Light> lights;
+  std::optional<Camera> camera;            // empty: framed automatically
+  std::optional<Environment> environment;  // empty: --lighting decides
+  std::optional<RoundingSettings> rounding;  // default of all objects
+  ImageSettings image;
+};
+
+}  // namespace arris
