@@ -1,0 +1,122 @@
+// rounding.h — rounded edges beside a mesh, without touching it
+// What       make_rounding() builds, from triangles and a radius, an immutable structure beside the
+//            mesh. Given a ray and its hit on the mesh, resolve() says what the rounded solid does with
+//            it: the hit stands, it moves onto an edge's cylinder or a corner's sphere, or the ray
+//            passes between the sharp and the rounded edge and leaves the solid again.
+// In / Out   the mesh's own space and units; rays in double precision, directions need not be unit
+// Guarantee  a closed convex solid whose every edge turns by min_angle or more is rounded exactly: its
+//            surface is that of the union of all balls of the radius that fit inside
+//            (tests/rounding/oracle_test.cpp). Other solids never get a hole: a ray passes only where it
+//            enters and leaves within the bands that the rounding takes away.
+// Limits     concave edges stay sharp; a solid that isn't convex is rounded along its convex edges locally
+// Cost       building is linear in the triangles; a kept hit costs a few multiplications.
+//            Const after building, safe from any number of threads.
+// Source     Courtin, Horna, Ribardière, Poulin, Meneveaux, "Efficient Rendering of Rounded Corners and
+//            Edges for Convex Objects"; where this differs is said in src/rounding/.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "arris/math.h"
+#include "arris/scene.h"
+
+namespace arris {
+
+struct MeshView {
+  std::span<const Vec3f> positions;
+  std::span<const Triangle> triangles;
+};
+
+// How a hit finds the rounding near it (paper §3.2 against the index by face; bench/rounding compares).
+enum class Detection { face_index, kd_tree };
+
+struct RoundingOptions {
+  double radius = 0;  // > 0, in the mesh's units
+  RoundEdges edges = RoundEdges::convex;
+  double min_angle = radians(30);
+  Detection detection = Detection::face_index;
+};
+
+// Position along a ray: origin + t * direction.
+struct Ray {
+  Vec3d origin;
+  Vec3d direction;
+};
+
+// What a ray tracer reports: u and v are the barycentric weights of the triangle's second and third
+// vertex.
+struct MeshHit {
+  std::uint32_t triangle = 0;
+  double u = 0, v = 0;
+  double t = 0;
+};
+
+enum class Feature : std::uint8_t { face, edge, corner, fillet, csg };
+const char* name_of(Feature feature);
+
+struct RoundedHit {
+  double t = 0;
+  Vec3d normal;  // unit, outward from the solid
+  Feature feature = Feature::face;
+};
+
+// What becomes of one hit on the mesh.
+struct Resolution {
+  enum class Outcome : std::uint8_t {
+    kept,    // the hit stands
+    moved,   // the surface is at `hit` instead
+    passed,  // the ray misses the rounded solid here: ask for the next hit of the mesh
+  };
+  Outcome outcome = Outcome::kept;
+  RoundedHit hit;
+};
+
+struct RoundingReport {
+  std::uint64_t solids = 0, convex_solids = 0, exact_solids = 0, open_solids = 0;
+  std::uint64_t rounded_edges = 0, rounded_corners = 0;
+  std::uint64_t concave_edges = 0, smooth_edges = 0, boundary_edges = 0, nonmanifold_edges = 0;
+  std::uint64_t bytes = 0;
+  std::vector<std::string> notes;  // what could not be rounded, and why
+};
+
+class Rounding {
+ public:
+  Rounding(Rounding&&) noexcept;
+  Rounding& operator=(Rounding&&) noexcept;
+  ~Rounding();
+
+  // True if the hit is on the rounded solid itself. u, v as in MeshHit.
+  [[nodiscard]] bool is_kept(std::uint32_t triangle, double u, double v) const;
+
+  // For a hit that need not be kept. A hit from inside (direction along the outward normal) is resolved
+  // towards the ray's origin: the moved hit has a smaller t.
+  [[nodiscard]] Resolution resolve(const Ray& ray, const MeshHit& hit) const;
+
+  // The solid (connected component) of a triangle, and whether it is exact (see Guarantee): once a ray has
+  // passed such a solid it never meets it again.
+  [[nodiscard]] std::uint32_t solid_of(std::uint32_t triangle) const;
+  [[nodiscard]] bool is_exact(std::uint32_t solid) const;
+
+  // Outward unit normal of a triangle's flat region.
+  [[nodiscard]] Vec3d face_normal(std::uint32_t triangle) const;
+
+  [[nodiscard]] const RoundingReport& report() const;
+
+  struct Data;
+  explicit Rounding(std::unique_ptr<const Data> data);
+  [[nodiscard]] const Data& data() const { return *data_; }
+
+ private:
+  std::unique_ptr<const Data> data_;
+};
+
+// Throws Error (kind input, where = `name`) if the radius is not positive or not smaller than the inradius
+// of a convex solid; the message says the largest radius that works.
+Rounding make_rounding(const MeshView& mesh, const RoundingOptions& options, const std::string& name = "");
+
+}  // namespace arris
