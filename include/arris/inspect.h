@@ -12,11 +12,11 @@ namespace arris {
 
 // Edges of the welded mesh by what rounding does with them.
 struct EdgeCounts {
-  std::uint64_t convex = 0;    // turns outward by min_angle or more
-  std::uint64_t concave = 0;   // turns inward by min_angle or more
-  std::uint64_t smooth = 0;    // turns by less than min_angle, but is not flat
-  std::uint64_t flat = 0;      // between coplanar triangles
-  std::uint64_t boundary = 0;  // one triangle
+  std::uint64_t convex = 0;       // turns outward by min_angle or more
+  std::uint64_t concave = 0;      // turns inward by min_angle or more
+  std::uint64_t smooth = 0;       // turns by less than min_angle, but is not flat
+  std::uint64_t flat = 0;         // between coplanar triangles
+  std::uint64_t boundary = 0;     // one triangle
   std::uint64_t nonmanifold = 0;  // more than two triangles, or two of opposite orientation
 };
 
@@ -25,10 +25,10 @@ struct ObjectReport {
   std::uint64_t triangles = 0, vertices = 0;  // vertices after welding
   std::uint64_t shells = 0;                   // connected components
   EdgeCounts edges;
-  bool closed = false;               // every shell
-  bool convex = false;               // every shell
-  std::optional<double> inradius;    // world units, the smallest of the closed convex shells
-  Vec3d bounds_min, bounds_max;      // world
+  bool closed = false;             // every shell
+  bool convex = false;             // every shell
+  std::optional<double> inradius;  // world units, the smallest of the closed convex shells
+  Vec3d bounds_min, bounds_max;    // world
   std::uint64_t degenerate_triangles = 0;
 };
 

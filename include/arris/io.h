@@ -25,8 +25,8 @@ std::vector<std::string> scene_extensions();
 Picture load_picture(const std::filesystem::path& path);
 
 struct SaveOptions {
-  double exposure = 0;       // stops; 8-bit formats only
-  bool tone_map = true;      // false: clip (8-bit formats only)
+  double exposure = 0;   // stops; 8-bit formats only
+  bool tone_map = true;  // false: clip (8-bit formats only)
   int jpeg_quality = 92;
   // String attributes of an EXR file: what part of which render it holds.
   std::vector<std::pair<std::string, std::string>> attributes;
@@ -35,7 +35,8 @@ struct SaveOptions {
 // .png .jpg .exr .pfm by extension. Layers go into EXR files as channels "name.R", … and beside other
 // formats as files of their own: out.png → out.albedo.png (normal, depth, … as .pfm values mapped to 0..1 is
 // not done: layers of .png and .jpg are written as .pfm, out.albedo.pfm).
-void save_picture(const Picture& picture, const std::filesystem::path& path, const SaveOptions& options = {});
+void save_picture(const Picture& picture, const std::filesystem::path& path,
+                  const SaveOptions& options = {});
 
 // The scene-referred to display curve of 8-bit output: linear RGB in, sRGB-encoded 0..1 out.
 Rgb tone_map(Rgb linear, double exposure);

@@ -93,8 +93,12 @@ bool is_finite(Vec3<T> a) {
   return std::isfinite(a.x) && std::isfinite(a.y) && std::isfinite(a.z);
 }
 
-constexpr double radians(double deg) { return deg * (kPi / 180.0); }
-constexpr double degrees(double rad) { return rad * (180.0 / kPi); }
+constexpr double radians(double deg) {
+  return deg * (kPi / 180.0);
+}
+constexpr double degrees(double rad) {
+  return rad * (180.0 / kPi);
+}
 
 // Three columns; maps column vectors.
 struct Mat3d {
@@ -109,7 +113,9 @@ struct Mat3d {
   }
 };
 
-constexpr double determinant(const Mat3d& m) { return dot(m.x, cross(m.y, m.z)); }
+constexpr double determinant(const Mat3d& m) {
+  return dot(m.x, cross(m.y, m.z));
+}
 constexpr Mat3d transpose(const Mat3d& m) {
   return {{m.x.x, m.y.x, m.z.x}, {m.x.y, m.y.y, m.z.y}, {m.x.z, m.y.z, m.z.z}};
 }
@@ -129,8 +135,12 @@ struct Affine3d {
   }
 };
 
-constexpr Vec3d transform_point(const Affine3d& m, Vec3d p) { return m.linear * p + m.translation; }
-constexpr Vec3d transform_vector(const Affine3d& m, Vec3d v) { return m.linear * v; }
+constexpr Vec3d transform_point(const Affine3d& m, Vec3d p) {
+  return m.linear * p + m.translation;
+}
+constexpr Vec3d transform_vector(const Affine3d& m, Vec3d v) {
+  return m.linear * v;
+}
 // Normals go with the inverse transpose; the result is not unit.
 constexpr Vec3d transform_normal(const Affine3d& m, Vec3d n) {
   return transpose(inverse(m.linear)) * n;

@@ -61,15 +61,17 @@ struct RenderOptions {
   SampleRange samples;
   double time_limit_seconds = 0;  // 0: none; the render ends after the sample pass under way
   std::uint32_t seed = 0;
-  int threads = 0;  // 0: all
+  int threads = 0;                // 0: all
   std::vector<std::string> aovs;  // albedo normal depth object rounded
-  const std::atomic<bool>* stop = nullptr;  // set from any thread; the render ends after the pass under way
+  // Set from any thread; the render ends after the pass under way.
+  const std::atomic<bool>* stop = nullptr;
   std::function<void(const Progress&)> on_progress;  // from one thread at a time
 };
 
 struct RayCounts {
   std::uint64_t camera = 0, total = 0;
-  std::uint64_t rounded = 0;  // rays whose hit was on, or that passed through, a rounded edge or corner
+  // Rays whose hit was on, or that passed through, a rounded edge or corner.
+  std::uint64_t rounded = 0;
 };
 
 struct RenderResult {
@@ -84,7 +86,8 @@ class Renderer {
   virtual ~Renderer() = default;
   // AOV names it can fill.
   [[nodiscard]] virtual std::vector<std::string> aovs() const = 0;
-  [[nodiscard]] virtual RenderResult render(const PreparedScene& scene, const RenderOptions& options) const = 0;
+  [[nodiscard]] virtual RenderResult render(const PreparedScene& scene,
+                                            const RenderOptions& options) const = 0;
 };
 
 std::unique_ptr<Renderer> make_path_renderer();

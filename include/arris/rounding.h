@@ -117,6 +117,7 @@ class Rounding {
 
 // Throws Error (kind input, where = `name`) if the radius is not positive or not smaller than the inradius
 // of a convex solid; the message says the largest radius that works.
-Rounding make_rounding(const MeshView& mesh, const RoundingOptions& options, const std::string& name = "");
+Rounding make_rounding(const MeshView& mesh, const RoundingOptions& options,
+                       const std::string& name = "");
 
 }  // namespace arris

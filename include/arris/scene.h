@@ -34,8 +34,8 @@ struct Mesh {
   std::string name;
   std::vector<Vec3f> positions;
   std::vector<Triangle> triangles;
-  std::vector<Vec3f> normals;  // unit, one per position, or empty: flat shading
-  std::vector<Vec2f> uvs;      // one per position, or empty
+  std::vector<Vec3f> normals;                  // unit, one per position, or empty: flat shading
+  std::vector<Vec2f> uvs;                      // one per position, or empty
   std::vector<MaterialId> triangle_materials;  // one per triangle, or empty: the object's
 };
 
@@ -66,24 +66,24 @@ struct Material {
   float clearcoat = 0;
   float clearcoat_roughness = 0;
   Rgb emission{0, 0, 0};  // radiance
-  float opacity = 1;      // glTF alpha; below 1 the surface lets that share of light straight through
+  float opacity = 1;  // glTF alpha; below 1 the surface lets that share of light straight through
   std::optional<float> alpha_cutoff;  // glTF alphaMode MASK
   float normal_scale = 1;
   // If set, the material is the plain mix (1-w)·Lambert(base_color) + w·GGX(white, roughness), with
   // no Fresnel: Cycles' Diffuse and Glossy nodes under a Mix node. Metallic, ior, … are ignored.
   std::optional<float> glossy_mix;
 
-  std::optional<TextureId> base_color_texture;          // RGB, A = opacity
-  std::optional<TextureId> metallic_roughness_texture;  // G roughness, B metallic
-  std::optional<TextureId> emission_texture;            // RGB
-  std::optional<TextureId> normal_texture;              // tangent space
-  std::optional<TextureId> transmission_texture;        // R
-  std::optional<TextureId> clearcoat_texture;           // R
+  std::optional<TextureId> base_color_texture;           // RGB, A = opacity
+  std::optional<TextureId> metallic_roughness_texture;   // G roughness, B metallic
+  std::optional<TextureId> emission_texture;             // RGB
+  std::optional<TextureId> normal_texture;               // tangent space
+  std::optional<TextureId> transmission_texture;         // R
+  std::optional<TextureId> clearcoat_texture;            // R
   std::optional<TextureId> clearcoat_roughness_texture;  // G
 };
 
 // The rounding radius of an object, in world units whatever the instance's scale.
-struct AutoRadius {};               // reads well at the picture's size, fits the part
+struct AutoRadius {};  // reads well at the picture's size, fits the part
 struct PercentOfInradius {
   double percent = 10;
 };
@@ -174,14 +174,15 @@ struct StudioEnvironment {
   double strength = 1;
   Vec3d up{0, 0, 1};
 };
-using Environment = std::variant<ConstantEnvironment, SkyEnvironment, HdrEnvironment, StudioEnvironment>;
+using Environment =
+    std::variant<ConstantEnvironment, SkyEnvironment, HdrEnvironment, StudioEnvironment>;
 
 struct ImageSettings {
   int width_px = 1280;
   int height_px = 720;
   int samples_per_pixel = 64;
-  int max_depth = 8;          // path vertices after the camera's
-  double exposure = 0;        // stops, applied before tone mapping
+  int max_depth = 8;    // path vertices after the camera's
+  double exposure = 0;  // stops, applied before tone mapping
   enum class Filter { box, tent, gaussian, blackman_harris } filter = Filter::blackman_harris;
 };
 
@@ -192,8 +193,8 @@ struct Scene {
   std::vector<Texture> textures;
   std::vector<Object> objects;
   std::vector<Light> lights;
-  std::optional<Camera> camera;            // empty: framed automatically
-  std::optional<Environment> environment;  // empty: --lighting decides
+  std::optional<Camera> camera;              // empty: framed automatically
+  std::optional<Environment> environment;    // empty: --lighting decides
   std::optional<RoundingSettings> rounding;  // default of all objects
   ImageSettings image;
   Vec3d up{0, 0, 1};  // the world's up for automatic framing, sky, studio and ground; glTF: {0, 1, 0}

@@ -1,0 +1,15 @@
+#!/usr/bin/env bash
+# demo.sh — installs what is missing, builds Arris and renders examples/models to out/: each model
+# with its edges rounded by the automatic radius, as `arris render MODEL -o PICTURE` does.
+set -euo pipefail
+cd "$(dirname "$0")/.."
+
+scripts/install-deps.sh
+cmake --preset release
+cmake --build --preset release --target arris_program
+mkdir -p out
+arris=build/release/arris
+start=$SECONDS
+"$arris" render examples/models/desk_organiser.obj -o out/desk_organiser.png
+"$arris" render examples/models/desk_organiser.obj --round none -o out/desk_organiser_sharp.png
+echo "demo.sh: rendered out/desk_organiser.png and out/desk_organiser_sharp.png in $((SECONDS - start)) s"

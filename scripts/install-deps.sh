@@ -1,0 +1,46 @@
+#!/usr/bin/env bash
+# install-deps.sh — installs the Debian 12 packages that Arris is built, tested and checked with.
+# Does nothing, and asks no server, when all of them are there. Works as root or through sudo.
+set -euo pipefail
+
+packages=(
+  # build
+  g++ cmake ninja-build ccache git python3
+  # checks: clang-tidy, clang-format, libFuzzer and its sanitizers
+  clang clang-tidy clang-format libclang-rt-14-dev
+  # ray kernels, threads, SIMD
+  libembree-dev libtbb-dev libhwy-dev
+  # pictures
+  libopenexr-dev libpng-dev libturbojpeg0-dev libstb-dev
+  # models, scenes, JSON
+  libtinygltf-dev libtinyobjloader-dev libtomlplusplus-dev nlohmann-json3-dev
+  # geometry
+  libqhull-dev
+  # command line, text, log
+  libcli11-dev libfmt-dev libspdlog-dev
+  # tests and benchmarks
+  libgtest-dev libgmock-dev librapidcheck-dev libbenchmark-dev
+)
+
+missing=()
+for package in "${packages[@]}"; do
+  state=$(dpkg-query --show --showformat='${db:Status-Status}' "$package" 2>/dev/null || true)
+  [ "$state" = installed ] || missing+=("$package")
+done
+if [ ${#missing[@]} -eq 0 ]; then
+  echo "install-deps: all ${#packages[@]} packages are installed"
+  exit 0
+fi
+
+as_root=()
+if [ "$(id -u)" -ne 0 ]; then
+  if ! command -v sudo >/dev/null; then
+    echo "install-deps: missing ${missing[*]}; run this as root, or install sudo" >&2
+    exit 1
+  fi
+  as_root=(sudo)
+fi
+echo "install-deps: installing ${missing[*]}"
+"${as_root[@]}" apt-get update -q
+"${as_root[@]}" env DEBIAN_FRONTEND=noninteractive \
+  apt-get install -q -y --no-install-recommends "${missing[@]}"
