@@ -197,7 +197,8 @@ struct Scene {
   std::optional<Environment> environment;    // empty: --lighting decides
   std::optional<RoundingSettings> rounding;  // default of all objects
   ImageSettings image;
-  Vec3d up{0, 0, 1};  // the world's up for automatic framing, sky, studio and ground; glTF: {0, 1, 0}
+  // The world's up for automatic framing, sky, studio and ground; glTF: {0, 1, 0}.
+  Vec3d up{0, 0, 1};
   std::vector<std::string> notes;  // what a reader left out, one line each, for the user
 };
 
