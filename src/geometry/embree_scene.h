@@ -1,0 +1,74 @@
+// embree_scene.h — the scene's triangles in one Embree scene
+// What       meshes used by one object, and small copies, are baked to world space: one flat BVH, the
+//            fastest to trace. Objects that share a big mesh become instances of one BVH. Besides, one
+//            record per geometry with what a hit is evaluated from.
+// Guarantee  robust traversal: no ray passes between two triangles that share an edge
+//            (tests/render/trace_test.cpp)
+// Limits     float coordinates: a scene far from its origin loses precision in proportion
+// Errors     Error::failed when memory runs out
+// Cost       build linear in the triangles (times log), parallel; const afterwards
+// Embree     its headers are included by embree_scene.cpp and render/trace.cpp, nowhere else
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "arris/scene.h"
+
+struct RTCSceneTy;
+
+namespace arris {
+
+struct Mat3f {
+  Vec3f x, y, z;  // columns
+};
+inline Vec3f operator*(const Mat3f& m, Vec3f v) {
+  return m.x * v.x + m.y * v.y + m.z * v.z;
+}
+
+// What a hit on one geometry is evaluated from. Pointers go into the scene's meshes or the baked copy.
+struct GeometryRecord {
+  const Triangle* triangles = nullptr;
+  const Vec3f* positions = nullptr;  // world space if baked, object space if instanced
+  const Vec3f* normals = nullptr;    // object space; null: flat
+  const Vec2f* uvs = nullptr;
+  const MaterialId* triangle_materials = nullptr;  // null: `material`
+  ObjectId object;
+  MeshId mesh;
+  MaterialId material;
+  std::uint32_t triangle_count = 0;
+  bool instanced = false;
+  float orientation = 1;  // -1: the transform mirrors, so winding turns round
+  float position_error =
+      0;  // world units: how far a computed point may be from its triangle's plane
+  Mat3f normal_from_object;  // inverse transpose, for shading normals; not unit length
+};
+
+struct EmbreeSceneOptions {
+  int threads = 0;  // 0: all
+  // Baking shared meshes may add this many triangles; the biggest savings are instanced beyond.
+  std::uint64_t max_copied_triangles = 2'000'000;
+};
+
+class EmbreeScene {
+ public:
+  // Keeps pointers into `scene`, which must outlive it and not move.
+  explicit EmbreeScene(const Scene& scene, const EmbreeSceneOptions& options = {});
+  EmbreeScene(const EmbreeScene&) = delete;
+  EmbreeScene& operator=(const EmbreeScene&) = delete;
+  ~EmbreeScene();
+
+  [[nodiscard]] RTCSceneTy* handle() const { return handle_; }
+  // Index: what GeometryRecord an Embree hit belongs to, see render/trace.cpp.
+  [[nodiscard]] const std::vector<GeometryRecord>& records() const { return records_; }
+  [[nodiscard]] std::uint64_t bytes() const;  // BVH and baked copies
+
+ private:
+  struct Device;
+  std::unique_ptr<Device> device_;
+  RTCSceneTy* handle_ = nullptr;
+  std::vector<GeometryRecord> records_;
+};
+
+}  // namespace arris

@@ -1,0 +1,77 @@
+#include "render/prepared_scene.h"
+
+#include <chrono>
+#include <numeric>
+#include <string>
+
+#include "arris/error.h"
+#include "render/camera.h"
+#include "render/scene_geometry.h"
+
+namespace arris {
+namespace {
+
+void throw_if_invalid(const Scene& scene) {
+  const std::vector<std::string> problems = validate_scene(scene);
+  if (problems.empty()) {
+    return;
+  }
+  std::string text;
+  for (const std::string& problem : problems) {
+    text += (text.empty() ? "" : "\n") + problem;
+  }
+  throw Error(Error::Kind::input, "", text);
+}
+
+}  // namespace
+
+PreparedScene::PreparedScene(std::shared_ptr<const SceneGeometry> geometry)
+    : geometry_(std::move(geometry)) {
+  const Scene& s = geometry_->scene;
+  stats_.build_seconds = geometry_->build_seconds;
+  stats_.objects = s.objects.size();
+  for (const Object& object : s.objects) {
+    stats_.triangles += s.meshes[object.mesh.index].triangles.size();
+  }
+  stats_.geometry_bytes = geometry_->embree.bytes();
+  for (const Mesh& mesh : s.meshes) {
+    stats_.geometry_bytes += mesh.positions.size() * sizeof(Vec3f) +
+                             mesh.normals.size() * sizeof(Vec3f) + mesh.uvs.size() * sizeof(Vec2f) +
+                             mesh.triangles.size() * sizeof(Triangle) +
+                             mesh.triangle_materials.size() * sizeof(MaterialId);
+  }
+}
+
+PreparedScene::~PreparedScene() = default;
+
+const Scene& PreparedScene::scene() const {
+  return geometry_->scene;
+}
+const EmbreeScene& PreparedScene::embree() const {
+  return geometry_->embree;
+}
+
+std::shared_ptr<const PreparedScene> prepare_scene(Scene scene, const PrepareOptions& options) {
+  const auto start = std::chrono::steady_clock::now();
+  throw_if_invalid(scene);
+  if (!scene.camera) {
+    scene.camera = frame_scene(scene);
+  }
+  if (!scene.environment) {
+    scene.environment = StudioEnvironment{.strength = 1, .up = scene.up};
+  }
+  auto geometry = std::make_shared<SceneGeometry>(std::move(scene),
+                                                  EmbreeSceneOptions{.threads = options.threads});
+  geometry->build_seconds =
+      std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  return std::make_shared<const PreparedScene>(std::move(geometry));
+}
+
+const PrepareStats& prepare_stats(const PreparedScene& prepared) {
+  return prepared.stats();
+}
+const Scene& scene_of(const PreparedScene& prepared) {
+  return prepared.scene();
+}
+
+}  // namespace arris

@@ -1,0 +1,86 @@
+// prepared_scene.h — the scene, built once and then const: what all renderers read
+// What       the described scene with its camera and environment filled in, its acceleration structure
+//            and lights; and the two ray functions, which are the only way renderers meet geometry
+// Guarantee  const after prepare_scene(): every function is safe from any number of threads.
+//            No ray passes between two triangles that share an edge.
+// Limits     float coordinates, in proportion to their size
+// Frames     everything here is in world space
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "arris/render.h"
+#include "arris/rounding.h"
+#include "arris/scene.h"
+#include "geometry/embree_scene.h"
+
+namespace arris {
+
+inline constexpr std::uint32_t kNoGeometry = ~std::uint32_t{0};
+
+enum class Side : std::uint8_t { none, outside, inside };
+
+// Which surface a ray starts on, and towards which side of it it leaves. Rounding needs to know: a ray
+// that leaves a rounded edge outward starts inside the mesh.
+struct Departure {
+  std::uint32_t geometry =
+      kNoGeometry;  // index into EmbreeScene::records(); kNoGeometry: free space
+  std::uint32_t triangle = 0;
+  Side side = Side::none;
+  Feature feature = Feature::face;
+};
+
+struct TraceRay {
+  Vec3f origin;
+  Vec3f direction;  // unit
+  float t_min = 0;
+  float t_max = std::numeric_limits<float>::infinity();
+  Departure from;
+};
+
+struct SurfaceHit {
+  float t = 0;
+  Vec3f position;          // on the triangle to within GeometryRecord::position_error
+  Vec3f geometric_normal;  // unit, outward (by winding)
+  Vec3f shading_normal;    // unit, on the geometric normal's side
+  Vec2f uv;                // 0 where the mesh has none
+  float u = 0, v = 0;      // barycentric weights of the second and third vertex
+  std::uint32_t geometry = kNoGeometry;
+  std::uint32_t triangle = 0;
+  MaterialId material;
+  ObjectId object;
+  Side side = Side::outside;  // where the ray came from
+  Feature feature = Feature::face;
+  bool rounding_seen = false;  // the ray met a rounded edge or corner: there, or passing one before
+};
+
+// What depends on the description alone and survives a change of radius.
+struct SceneGeometry;
+
+class PreparedScene {
+ public:
+  explicit PreparedScene(std::shared_ptr<const SceneGeometry> geometry);
+  ~PreparedScene();
+
+  [[nodiscard]] const Scene& scene() const;
+  [[nodiscard]] const EmbreeScene& embree() const;
+  [[nodiscard]] const PrepareStats& stats() const { return stats_; }
+
+  // The closest surface in (t_min, t_max).
+  [[nodiscard]] std::optional<SurfaceHit> intersect(const TraceRay& ray) const;
+  // Whether any surface is in (t_min, t_max).
+  [[nodiscard]] bool occluded(const TraceRay& ray) const;
+
+ private:
+  std::shared_ptr<const SceneGeometry> geometry_;
+  PrepareStats stats_;
+};
+
+// The ray that leaves a hit in a direction: it starts off the surface by what rounding errors need.
+TraceRay leave_surface(const PreparedScene& scene, const SurfaceHit& hit, Vec3f direction);
+
+}  // namespace arris

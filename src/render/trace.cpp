@@ -1,0 +1,150 @@
+// trace.cpp — the ray functions: the only calls that trace rays
+#include <embree3/rtcore.h>
+
+#include <cmath>
+
+#include "render/prepared_scene.h"
+#include "render/scene_geometry.h"
+
+namespace arris {
+namespace {
+
+RTCRay make_ray(const TraceRay& ray) {
+  RTCRay r;
+  r.org_x = ray.origin.x;
+  r.org_y = ray.origin.y;
+  r.org_z = ray.origin.z;
+  r.tnear = ray.t_min;
+  r.dir_x = ray.direction.x;
+  r.dir_y = ray.direction.y;
+  r.dir_z = ray.direction.z;
+  r.time = 0;
+  r.tfar = ray.t_max;
+  r.mask = ~0U;
+  r.id = 0;
+  r.flags = 0;
+  return r;
+}
+
+std::uint32_t geometry_of(const RTCHit& hit) {
+  return hit.instID[0] == RTC_INVALID_GEOMETRY_ID ? hit.geomID : hit.instID[0];
+}
+
+struct WorldTriangle {
+  Vec3f p0, p1, p2;
+};
+
+WorldTriangle world_triangle(const Scene& scene, const GeometryRecord& record,
+                             std::uint32_t index) {
+  const Triangle& t = record.triangles[index];
+  const WorldTriangle triangle{record.positions[t[0]], record.positions[t[1]],
+                               record.positions[t[2]]};
+  if (!record.instanced) {
+    return triangle;
+  }
+  const Affine3d& m = scene.objects[record.object.index].world_from_object;
+  return {Vec3f(transform_point(m, Vec3d(triangle.p0))),
+          Vec3f(transform_point(m, Vec3d(triangle.p1))),
+          Vec3f(transform_point(m, Vec3d(triangle.p2)))};
+}
+
+// Interpolated, in world space, on the side of the geometric normal.
+Vec3f interpolated_normal(const GeometryRecord& record, const Triangle& triangle, float u, float v,
+                          Vec3f geometric_normal) {
+  const Vec3f sum = (1 - u - v) * record.normals[triangle[0]] + u * record.normals[triangle[1]] +
+                    v * record.normals[triangle[2]];
+  const Vec3f normal = record.normal_from_object * sum;
+  const float squared = length_squared(normal);
+  if (!(squared > 0)) {
+    return geometric_normal;  // opposite vertex normals cancel
+  }
+  const Vec3f unit = normal * (1 / std::sqrt(squared));
+  return dot(unit, geometric_normal) < 0 ? -unit : unit;
+}
+
+// Normals of triangles whose area underflows in float.
+Vec3f unit_normal(const WorldTriangle& w) {
+  const Vec3f n = cross(w.p1 - w.p0, w.p2 - w.p0);
+  const float squared = length_squared(n);
+  if (squared > 1e-30F && squared < 1e30F) [[likely]] {
+    return n * (1 / std::sqrt(squared));
+  }
+  const Vec3d precise = cross(Vec3d(w.p1) - Vec3d(w.p0), Vec3d(w.p2) - Vec3d(w.p0));
+  const double precise_length = length(precise);
+  return precise_length > 0 ? Vec3f(precise * (1 / precise_length)) : Vec3f(0, 0, 1);
+}
+
+SurfaceHit make_surface_hit(const SceneGeometry& geometry, const TraceRay& ray,
+                            const RTCRayHit& query) {
+  SurfaceHit hit;
+  hit.geometry = geometry_of(query.hit);
+  const GeometryRecord& record = geometry.embree.records()[hit.geometry];
+  hit.t = query.ray.tfar;
+  hit.triangle = query.hit.primID;
+  hit.u = query.hit.u;
+  hit.v = query.hit.v;
+  const Triangle& indices = record.triangles[hit.triangle];
+  const WorldTriangle world = world_triangle(geometry.scene, record, hit.triangle);
+  hit.position = (1 - hit.u - hit.v) * world.p0 + hit.u * world.p1 + hit.v * world.p2;
+  hit.geometric_normal = unit_normal(world) * record.orientation;
+  hit.shading_normal = record.normals == nullptr ? hit.geometric_normal
+                                                 : interpolated_normal(record, indices, hit.u,
+                                                                       hit.v, hit.geometric_normal);
+  if (record.uvs != nullptr) {
+    const Vec2f a = record.uvs[indices[0]], b = record.uvs[indices[1]], c = record.uvs[indices[2]];
+    const float w = 1 - hit.u - hit.v;
+    hit.uv = {w * a.x + hit.u * b.x + hit.v * c.x, w * a.y + hit.u * b.y + hit.v * c.y};
+  }
+  hit.material = record.triangle_materials == nullptr ? record.material
+                                                      : record.triangle_materials[hit.triangle];
+  hit.object = record.object;
+  hit.side = dot(ray.direction, hit.geometric_normal) < 0 ? Side::outside : Side::inside;
+  return hit;
+}
+
+bool is_departure(const RTCHit& hit, const Departure& from) {
+  return geometry_of(hit) == from.geometry && hit.primID == from.triangle;
+}
+
+}  // namespace
+
+std::optional<SurfaceHit> PreparedScene::intersect(const TraceRay& ray) const {
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  RTCRayHit query;
+  query.ray = make_ray(ray);
+  for (;;) {
+    query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+    query.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
+    rtcIntersect1(geometry_->embree.handle(), &context, &query);
+    if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) {
+      return std::nullopt;
+    }
+    if (!is_departure(query.hit, ray.from)) [[likely]] {
+      return make_surface_hit(*geometry_, ray, query);
+    }
+    // A plane is met once: slivers can be met again by rounding.
+    query.ray.tnear = std::nextafter(query.ray.tfar, std::numeric_limits<float>::infinity());
+    query.ray.tfar = ray.t_max;
+  }
+}
+
+bool PreparedScene::occluded(const TraceRay& ray) const {
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  RTCRay query = make_ray(ray);
+  rtcOccluded1(geometry_->embree.handle(), &context, &query);
+  return query.tfar < 0;
+}
+
+TraceRay leave_surface(const PreparedScene& scene, const SurfaceHit& hit, Vec3f direction) {
+  const float error = scene.embree().records()[hit.geometry].position_error;
+  const bool outward = dot(direction, hit.geometric_normal) > 0;
+  TraceRay ray;
+  ray.origin = hit.position + hit.geometric_normal * (outward ? error : -error);
+  ray.direction = direction;
+  ray.from = {hit.geometry, hit.triangle, outward ? Side::outside : Side::inside, hit.feature};
+  return ray;
+}
+
+}  // namespace arris

@@ -1,0 +1,405 @@
+// validate_scene.cpp — everything that is wrong with a scene, before anything is built from it
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <type_traits>
+#include <variant>
+#include <vector>
+
+#include "arris/render.h"
+
+namespace arris {
+namespace {
+
+constexpr int kMaxSide = 65536;                      // pixels
+constexpr std::uint64_t kMaxTriangles = 1ULL << 31;  // of one mesh
+// Squares and products of four coordinates must stay within float.
+constexpr double kMaxCoordinate = 1e9;
+
+using Problems = std::vector<std::string>;
+
+std::string list(Vec3d v) {
+  return fmt::format("({:g}, {:g}, {:g})", v.x, v.y, v.z);
+}
+
+// One line for all elements that are wrong in one way: how many, and the first.
+template <class Range, class IsWrong, class Describe>
+void report_first(const Range& range, const IsWrong& is_wrong, Problems& problems,
+                  const Describe& describe) {
+  std::size_t count = 0, first = 0, index = 0;
+  for (const auto& element : range) {
+    if (is_wrong(element) && count++ == 0) {
+      first = index;
+    }
+    ++index;
+  }
+  if (count > 0) {
+    problems.push_back(describe(first) +
+                       (count > 1 ? fmt::format(" ({} more like it)", count - 1) : std::string()));
+  }
+}
+
+bool usable_coordinate(Vec3d p) {
+  return is_finite(p) && std::max({std::abs(p.x), std::abs(p.y), std::abs(p.z)}) <= kMaxCoordinate;
+}
+
+// ---------------------------------------------------------------------------------------------- meshes
+
+void check_mesh(const Scene& scene, std::size_t index, Problems& problems) {
+  const Mesh& mesh = scene.meshes[index];
+  const std::string where =
+      mesh.name.empty() ? fmt::format("mesh {}", index) : fmt::format("mesh \"{}\"", mesh.name);
+  const std::size_t vertices = mesh.positions.size();
+  const auto check_length = [&](std::string_view what, std::size_t have, std::size_t want) {
+    if (have != 0 && have != want) {
+      problems.push_back(fmt::format("{}: {} {}, but {} are needed; give one each or none", where,
+                                     have, what, want));
+    }
+  };
+  check_length("vertex normals", mesh.normals.size(), vertices);
+  check_length("texture coordinates", mesh.uvs.size(), vertices);
+  check_length("triangle materials", mesh.triangle_materials.size(), mesh.triangles.size());
+  if (mesh.triangles.size() > kMaxTriangles || vertices > kMaxTriangles) {
+    problems.push_back(fmt::format("{}: {} triangles; at most {} fit in one mesh, split it", where,
+                                   mesh.triangles.size(), kMaxTriangles));
+  }
+  report_first(
+      mesh.positions, [](Vec3f p) { return !usable_coordinate(Vec3d(p)); }, problems,
+      [&](std::size_t i) {
+        return fmt::format("{}: vertex {} is at {}; coordinates must be numbers up to {:g}", where,
+                           i, list(Vec3d(mesh.positions[i])), kMaxCoordinate);
+      });
+  report_first(
+      mesh.triangles,
+      [&](const Triangle& t) { return t[0] >= vertices || t[1] >= vertices || t[2] >= vertices; },
+      problems,
+      [&](std::size_t i) {
+        const Triangle& t = mesh.triangles[i];
+        return fmt::format("{}: triangle {} refers to vertex {}, but there are {}", where, i,
+                           std::max({t[0], t[1], t[2]}), vertices);
+      });
+  report_first(
+      mesh.normals, [](Vec3f n) { return !is_finite(n); }, problems,
+      [&](std::size_t i) {
+        return fmt::format("{}: the normal of vertex {} is not a number", where, i);
+      });
+  report_first(
+      mesh.uvs, [](Vec2f uv) { return !std::isfinite(uv.x) || !std::isfinite(uv.y); }, problems,
+      [&](std::size_t i) {
+        return fmt::format("{}: the texture coordinates of vertex {} are not numbers", where, i);
+      });
+  report_first(
+      mesh.triangle_materials, [&](MaterialId id) { return id.index >= scene.materials.size(); },
+      problems,
+      [&](std::size_t i) {
+        return fmt::format("{}: triangle {} has material {}, but there are {}", where, i,
+                           mesh.triangle_materials[i].index, scene.materials.size());
+      });
+}
+
+// ------------------------------------------------------------------------------- materials and textures
+
+void check_range(const std::string& where, std::string_view name, double value, double low,
+                 double high, Problems& problems) {
+  if (!(value >= low && value <= high)) {
+    problems.push_back(
+        std::isinf(high)
+            ? fmt::format("{}: {} is {:g}; it must be at least {:g}", where, name, value, low)
+            : fmt::format("{}: {} is {:g}; it must be from {:g} to {:g}", where, name, value, low,
+                          high));
+  }
+}
+
+void check_color(const std::string& where, std::string_view name, Rgb color, double high,
+                 Problems& problems) {
+  for (int channel = 0; channel < 3; ++channel) {
+    if (!(color[channel] >= 0) || !(color[channel] <= high) || std::isinf(color[channel])) {
+      problems.push_back(fmt::format(
+          "{}: {} is {}; each channel must be {}", where, name, list(Vec3d(color)),
+          std::isinf(high) ? "at least 0 and finite" : fmt::format("from 0 to {:g}", high)));
+      return;
+    }
+  }
+}
+
+constexpr double kUnbounded = std::numeric_limits<double>::infinity();
+
+void check_material(const Scene& scene, std::size_t index, Problems& problems) {
+  const Material& m = scene.materials[index];
+  const std::string where =
+      m.name.empty() ? fmt::format("material {}", index) : fmt::format("material \"{}\"", m.name);
+  check_color(where, "base_color", m.base_color, 1, problems);
+  check_color(where, "specular_color", m.specular_color, kUnbounded, problems);
+  check_color(where, "emission", m.emission, kUnbounded, problems);
+  check_range(where, "metallic", m.metallic, 0, 1, problems);
+  check_range(where, "roughness", m.roughness, 0, 1, problems);
+  check_range(where, "ior", m.ior, 1, 100, problems);
+  check_range(where, "specular", m.specular, 0, 1, problems);
+  check_range(where, "transmission", m.transmission, 0, 1, problems);
+  check_range(where, "clearcoat", m.clearcoat, 0, 1, problems);
+  check_range(where, "clearcoat_roughness", m.clearcoat_roughness, 0, 1, problems);
+  check_range(where, "opacity", m.opacity, 0, 1, problems);
+  check_range(where, "normal_scale", m.normal_scale, -100, 100, problems);
+  if (m.alpha_cutoff) {
+    check_range(where, "alpha_cutoff", *m.alpha_cutoff, 0, kUnbounded, problems);
+  }
+  if (m.glossy_mix) {
+    check_range(where, "glossy_mix", *m.glossy_mix, 0, 1, problems);
+  }
+  for (const auto& texture :
+       {m.base_color_texture, m.metallic_roughness_texture, m.emission_texture, m.normal_texture,
+        m.transmission_texture, m.clearcoat_texture, m.clearcoat_roughness_texture}) {
+    if (texture && texture->index >= scene.textures.size()) {
+      problems.push_back(fmt::format("{}: uses texture {}, but there are {}", where, texture->index,
+                                     scene.textures.size()));
+    }
+  }
+}
+
+void check_texture(const Texture& texture, std::size_t index, Problems& problems) {
+  const std::string where = texture.name.empty() ? fmt::format("texture {}", index)
+                                                 : fmt::format("texture \"{}\"", texture.name);
+  if (texture.width_px < 1 || texture.height_px < 1 || texture.width_px > kMaxSide ||
+      texture.height_px > kMaxSide) {
+    problems.push_back(fmt::format("{}: size {}x{}; sides must be from 1 to {} pixels", where,
+                                   texture.width_px, texture.height_px, kMaxSide));
+  } else if (texture.texels.size() !=
+             std::size_t(texture.width_px) * std::size_t(texture.height_px)) {
+    problems.push_back(fmt::format("{}: {} texels for {}x{} pixels", where, texture.texels.size(),
+                                   texture.width_px, texture.height_px));
+  }
+}
+
+// ---------------------------------------------------------------------------------------------- objects
+
+void check_rounding(const std::string& where, const RoundingSettings& rounding,
+                    Problems& problems) {
+  if (rounding.method == RoundMethod::none) {
+    return;
+  }
+  if (const double* radius = std::get_if<double>(&rounding.radius)) {
+    if (!(*radius > 0 && std::isfinite(*radius))) {
+      problems.push_back(
+          fmt::format("{}: rounding radius is {:g}; it must be more than 0", where, *radius));
+    }
+  } else if (const auto* part = std::get_if<PercentOfInradius>(&rounding.radius)) {
+    if (!(part->percent > 0 && part->percent < 100)) {
+      problems.push_back(fmt::format(
+          "{}: rounding radius is {:g}% of the inradius; it must be more than 0 and less than 100",
+          where, part->percent));
+    }
+  }
+  if (!(rounding.min_angle > 0 && rounding.min_angle < kPi)) {
+    problems.push_back(
+        fmt::format("{}: min_angle is {:g} degrees; it must be more than 0 and less than 180",
+                    where, degrees(rounding.min_angle)));
+  }
+  check_range(where, "rounding subdivisions", rounding.subdivisions, 1, 64, problems);
+  check_range(where, "bevel shader divisions", rounding.shader.divisions, 1, 64, problems);
+  if (rounding.shader.delta) {
+    check_range(where, "bevel shader delta", *rounding.shader.delta, 0, kUnbounded, problems);
+  }
+  if (rounding.shader.perturb) {
+    check_range(where, "bevel shader perturb", *rounding.shader.perturb, 0, kUnbounded, problems);
+  }
+}
+
+bool invertible(const Mat3d& m) {
+  const double scale = std::max({length(m.x), length(m.y), length(m.z)});
+  return std::abs(determinant(m)) > 1e-15 * scale * scale * scale;
+}
+
+void check_object(const Scene& scene, std::size_t index, Problems& problems) {
+  const Object& object = scene.objects[index];
+  const std::string where = object.name.empty() ? fmt::format("object {}", index)
+                                                : fmt::format("object \"{}\"", object.name);
+  if (object.mesh.index >= scene.meshes.size()) {
+    problems.push_back(fmt::format("{}: uses mesh {}, but there are {}", where, object.mesh.index,
+                                   scene.meshes.size()));
+  }
+  if (object.material.index >= scene.materials.size()) {
+    problems.push_back(fmt::format("{}: uses material {}, but there are {}", where,
+                                   object.material.index, scene.materials.size()));
+  }
+  const Affine3d& m = object.world_from_object;
+  if (!is_finite(m.linear.x) || !is_finite(m.linear.y) || !is_finite(m.linear.z) ||
+      !usable_coordinate(m.translation)) {
+    problems.push_back(
+        fmt::format("{}: its transform holds what is not a number or is larger than {:g}", where,
+                    kMaxCoordinate));
+  } else if (!invertible(m.linear)) {
+    problems.push_back(
+        fmt::format("{}: its transform flattens it (determinant {:g}); use a scale other than 0",
+                    where, determinant(m.linear)));
+  }
+  if (object.rounding) {
+    check_rounding(where, *object.rounding, problems);
+  }
+}
+
+// ---------------------------------------------------------------------- lights, environment, camera, image
+
+bool is_direction(Vec3d v) {
+  return is_finite(v) && length_squared(v) > 0;
+}
+
+struct LightProblems {
+  std::string where;
+  Problems& problems;
+
+  void check_position(Vec3d p) const {
+    if (!usable_coordinate(p)) {
+      problems.push_back(fmt::format("{}: position is {}; coordinates must be numbers up to {:g}",
+                                     where, list(p), kMaxCoordinate));
+    }
+  }
+  void check_direction(Vec3d d) const {
+    if (!is_direction(d)) {
+      problems.push_back(
+          fmt::format("{}: direction is {}; give a vector other than 0", where, list(d)));
+    }
+  }
+  void operator()(const PointLight& light) const {
+    check_position(light.position);
+    check_color(where, "intensity", light.intensity, kUnbounded, problems);
+  }
+  void operator()(const SpotLight& light) const {
+    check_position(light.position);
+    check_direction(light.direction);
+    check_color(where, "intensity", light.intensity, kUnbounded, problems);
+    if (!(light.inner_angle >= 0 && light.inner_angle <= light.outer_angle &&
+          light.outer_angle <= kPi)) {
+      problems.push_back(
+          fmt::format("{}: angles are {:g} (inner) and {:g} (outer) degrees; needed: 0 <= inner <= "
+                      "outer <= 180",
+                      where, degrees(light.inner_angle), degrees(light.outer_angle)));
+    }
+  }
+  void operator()(const DirectionalLight& light) const {
+    check_direction(light.direction);
+    check_color(where, "irradiance", light.irradiance, kUnbounded, problems);
+  }
+  void operator()(const AreaLight& light) const {
+    check_position(light.corner);
+    check_color(where, "radiance", light.radiance, kUnbounded, problems);
+    if (!is_direction(cross(light.edge_u, light.edge_v))) {
+      problems.push_back(fmt::format("{}: edges {} and {} span no area", where, list(light.edge_u),
+                                     list(light.edge_v)));
+    }
+  }
+};
+
+struct EnvironmentProblems {
+  Problems& problems;
+
+  void check_up(Vec3d up) const {
+    if (!is_direction(up)) {
+      problems.push_back(
+          fmt::format("environment: up is {}; give a vector other than 0", list(up)));
+    }
+  }
+  void operator()(const ConstantEnvironment& e) const {
+    check_color("environment", "radiance", e.radiance, kUnbounded, problems);
+  }
+  void operator()(const SkyEnvironment& e) const {
+    check_up(e.up);
+    check_range("environment", "turbidity", e.turbidity, 1.7, 20, problems);
+    check_range("environment", "strength", e.strength, 0, 1e12, problems);
+    if (!is_direction(e.sun_direction)) {
+      problems.push_back(fmt::format("environment: sun_direction is {}; give a vector other than 0",
+                                     list(e.sun_direction)));
+    }
+  }
+  void operator()(const HdrEnvironment& e) const {
+    check_up(e.up);
+    check_range("environment", "strength", e.strength, 0, 1e12, problems);
+    if (e.width_px < 1 || e.height_px < 1 ||
+        e.radiance.size() != std::size_t(e.width_px) * std::size_t(e.height_px)) {
+      problems.push_back(fmt::format("environment \"{}\": {} values for {}x{} pixels", e.name,
+                                     e.radiance.size(), e.width_px, e.height_px));
+    }
+    report_first(
+        e.radiance, [](Rgb c) { return !is_finite(c) || c.x < 0 || c.y < 0 || c.z < 0; }, problems,
+        [&](std::size_t i) {
+          return fmt::format(
+              "environment \"{}\": pixel {} holds {}; radiance must be at least 0 and finite",
+              e.name, i, list(Vec3d(e.radiance[i])));
+        });
+  }
+  void operator()(const StudioEnvironment& e) const {
+    check_up(e.up);
+    check_range("environment", "strength", e.strength, 0, 1e12, problems);
+  }
+};
+
+void check_camera(const Camera& camera, Problems& problems) {
+  const Vec3d forward = camera.target - camera.position;
+  if (!usable_coordinate(camera.position) || !usable_coordinate(camera.target)) {
+    problems.push_back(fmt::format("camera: position {} or target {} is not a number up to {:g}",
+                                   list(camera.position), list(camera.target), kMaxCoordinate));
+  } else if (!(length(forward) > 0)) {
+    problems.push_back(
+        fmt::format("camera: position and target are both {}; move one", list(camera.position)));
+  } else if (!is_direction(camera.up) ||
+             !(length(cross(normalize(forward), normalize(camera.up))) > 1e-9)) {
+    problems.push_back(
+        fmt::format("camera: up is {}, along the view; choose an up that is not", list(camera.up)));
+  }
+  if (!(camera.fov_deg > 0.01 && camera.fov_deg < 179)) {
+    problems.push_back(
+        fmt::format("camera: fov is {:g} degrees; it must be more than 0.01 and less than 179",
+                    camera.fov_deg));
+  }
+}
+
+void check_image(const ImageSettings& image, Problems& problems) {
+  if (image.width_px < 1 || image.height_px < 1 || image.width_px > kMaxSide ||
+      image.height_px > kMaxSide) {
+    problems.push_back(fmt::format("image: size {}x{}; sides must be from 1 to {} pixels",
+                                   image.width_px, image.height_px, kMaxSide));
+  }
+  check_range("image", "samples per pixel", image.samples_per_pixel, 1, 1 << 24, problems);
+  check_range("image", "max_depth", image.max_depth, 0, 1024, problems);
+  check_range("image", "exposure", image.exposure, -64, 64, problems);
+}
+
+}  // namespace
+
+std::vector<std::string> validate_scene(const Scene& scene) {
+  Problems problems;
+  check_image(scene.image, problems);
+  if (!is_direction(scene.up)) {
+    problems.push_back(fmt::format("scene: up is {}; give a vector other than 0", list(scene.up)));
+  }
+  for (std::size_t i = 0; i < scene.meshes.size(); ++i) {
+    check_mesh(scene, i, problems);
+  }
+  for (std::size_t i = 0; i < scene.materials.size(); ++i) {
+    check_material(scene, i, problems);
+  }
+  for (std::size_t i = 0; i < scene.textures.size(); ++i) {
+    check_texture(scene.textures[i], i, problems);
+  }
+  for (std::size_t i = 0; i < scene.objects.size(); ++i) {
+    check_object(scene, i, problems);
+  }
+  for (std::size_t i = 0; i < scene.lights.size(); ++i) {
+    std::visit(LightProblems{fmt::format("light {}", i), problems}, scene.lights[i]);
+  }
+  if (scene.environment) {
+    std::visit(EnvironmentProblems{problems}, *scene.environment);
+  }
+  if (scene.camera) {
+    check_camera(*scene.camera, problems);
+  }
+  if (scene.rounding) {
+    check_rounding("scene", *scene.rounding, problems);
+  }
+  return problems;
+}
+
+}  // namespace arris
