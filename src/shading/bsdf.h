@@ -1,0 +1,162 @@
+// bsdf.h — how a surface scatters light: a sum of at most four lobes
+// What       make_bsdf() turns the material at a point into lobes for one wo; eval_bsdf(),
+// pdf_bsdf() and
+//            sample_bsdf() belong together.
+//            diffuse   Lambert
+//            specular  GGX reflection of the dielectric's and the metal's surface, Schlick's
+//            Fresnel glass     GGX reflection and refraction of the transmitting share, exact
+//            Fresnel coat      GGX reflection of the clearcoat, F0 = 0.04, above all others
+// In / Out   local frame: z = shading normal on wo's side; wo and wi unit, away from the surface.
+// wi.z < 0
+//            is beyond the surface. eval returns f·|cos_i|; pdfs are per solid angle of wi.
+// Guarantee  integrates to at most 1.01 over wi for every material, and to within 2 % of 1 for
+// white ones
+//            (tests/shading/furnace_test.cpp): the layers below a reflecting one get what it leaves
+//            at wo (albedo scaling), and what GGX loses to single scattering is scaled back
+//            (Turquin). Both make f depend on wo more than on wi: reciprocity holds only for glossy
+//            mixes and metals of F0 = 0.
+// Limits     alpha = roughness² below kMinAlpha is a delta lobe: eval and pdf leave it out, sample
+//            returns it with is_delta. Light is carried as L/n²: the factor eta² of refracted
+//            radiance is left out; it cancels on every path that ends in the medium it began in.
+//            The transmission colour is split over the two interfaces of a solid: sqrt(base_color)
+//            at each.
+// Source     glTF 2.0 appendix B, KHR_materials_{ior,specular,transmission,clearcoat}; B. Walter et
+// al.
+//            2007; E. Turquin, "Practical multiple scattering compensation for microfacet models"
+//            (2019)
+#pragma once
+
+#include <optional>
+
+#include "arris/math.h"
+#include "shading/fresnel.h"
+#include "shading/ggx.h"
+#include "shading/surface_material.h"
+
+namespace arris {
+
+// Where wo is: outside of the solid or in its glass. Decides the relative index.
+enum class MediumSide { outside, inside };
+
+// Fixed for one wo. Lobes with share 0 don't exist.
+struct Bsdf {
+  Vec3f wo;
+  Rgb diffuse;         // albedo / π
+  Rgb specular_f0;     // Fresnel × weight × compensation at normal incidence
+  Rgb specular_f90;    // … at grazing
+  Rgb glass_reflect;   // factor of Fresnel's reflectance
+  Rgb glass_transmit;  // factor of what it leaves
+  float coat = 0;      // weight
+  float alpha = 1;     // of specular; 0: delta
+  float glass_alpha = 1;
+  float coat_alpha = 1;
+  float slope_o = 1;  // ggx_slope(alpha, wo.z)
+  float coat_slope_o = 1;
+  float eta = 1;          // index beyond the surface over the one on wo's side: bends
+  float fresnel_eta = 1;  // … after `specular`: reflects
+  // Selection probabilities; sum 1 unless the surface is black.
+  float share_diffuse = 0, share_specular = 0, share_glass = 0, share_coat = 0;
+};
+
+// wo.z: raised to a small positive number if the shading normal turned away from wo.
+Bsdf make_bsdf(const SurfaceMaterial& material, Vec3f wo, MediumSide side = MediumSide::outside);
+
+struct BsdfValue {
+  Rgb value;  // f·|cos_i|
+  float pdf = 0;
+};
+
+struct BsdfSample {
+  Vec3f wi;
+  Rgb weight;     // f·|cos_i| / pdf, of all lobes; of the delta lobe alone if is_delta
+  float pdf = 0;  // the lobe's selection probability if is_delta
+  bool is_delta = false;
+  bool is_transmission = false;
+};
+
+inline constexpr float kCoatF0 = 0.04F;
+
+inline Rgb schlick(Rgb f0, Rgb f90, float weight) {
+  return f0 + (f90 - f0) * weight;
+}
+
+// Refracted side of eval: adds to nothing, as all other lobes reflect.
+inline BsdfValue eval_glass_transmission(const Bsdf& bsdf, Vec3f wi) {
+  Vec3f h = normalize(bsdf.wo + wi * bsdf.eta);
+  h = h.z < 0.0F ? -h : h;
+  const float cos_oh = dot(bsdf.wo, h);
+  const float cos_ih = dot(wi, h);
+  if (cos_oh <= 0.0F || cos_ih >= 0.0F) {
+    return {};
+  }
+  const float denominator = cos_oh + bsdf.eta * cos_ih;
+  const float jacobian = -cos_ih * bsdf.eta * bsdf.eta / (denominator * denominator);
+  const float slope_i = ggx_slope(bsdf.glass_alpha, -wi.z);
+  const float slope_o = bsdf.slope_o;
+  const float transmittance = 1.0F - fresnel_dielectric(cos_oh, bsdf.fresnel_eta).reflectance;
+  const float pdf = transmittance * ggx_density(bsdf.glass_alpha, h) *
+                    ggx_visible_factor(bsdf.wo.z, slope_o) * 4.0F * cos_oh * jacobian;
+  const float shadowing = ggx_shadowing(bsdf.wo.z, slope_o, -wi.z, slope_i);
+  return {bsdf.glass_transmit * (pdf * shadowing), pdf * bsdf.share_glass};
+}
+
+// All lobes but delta ones.
+inline BsdfValue eval_bsdf_with_pdf(const Bsdf& bsdf, Vec3f wi) {
+  if (wi.z <= 0.0F) {
+    const bool rough_glass = bsdf.share_glass > 0.0F && bsdf.glass_alpha > 0.0F && wi.z < 0.0F;
+    return rough_glass ? eval_glass_transmission(bsdf, wi) : BsdfValue{};
+  }
+  BsdfValue result{bsdf.diffuse * wi.z, bsdf.share_diffuse * wi.z * (1.0F / kPiF)};
+  if (bsdf.share_diffuse == 1.0F) {
+    return result;
+  }
+  const Vec3f h = normalize(bsdf.wo + wi);
+  const float cos_oh = dot(bsdf.wo, h);
+  const float fresnel_weight = schlick_weight(cos_oh);
+  const float glossy_share = bsdf.alpha > 0.0F ? bsdf.share_specular : 0.0F;
+  const float glass_share = bsdf.glass_alpha > 0.0F ? bsdf.share_glass : 0.0F;
+  if (glossy_share + glass_share > 0.0F) {
+    const float d = ggx_density(bsdf.alpha, h);
+    const float slope_i = ggx_slope(bsdf.alpha, wi.z);
+    const float factor = d * ggx_reflection_factor(bsdf.wo.z, bsdf.slope_o, wi.z, slope_i);
+    float pdf_share = glossy_share;
+    if (glossy_share > 0.0F) {
+      result.value += schlick(bsdf.specular_f0, bsdf.specular_f90, fresnel_weight) * factor;
+    }
+    if (glass_share > 0.0F) {
+      const float reflectance = fresnel_dielectric(cos_oh, bsdf.fresnel_eta).reflectance;
+      result.value += bsdf.glass_reflect * (factor * reflectance);
+      pdf_share += glass_share * reflectance;
+    }
+    result.pdf += pdf_share * d * ggx_visible_factor(bsdf.wo.z, bsdf.slope_o);
+  }
+  if (bsdf.share_coat > 0.0F && bsdf.coat_alpha > 0.0F) {
+    const float d = ggx_density(bsdf.coat_alpha, h);
+    const float slope_i = ggx_slope(bsdf.coat_alpha, wi.z);
+    const float fresnel = kCoatF0 + (1.0F - kCoatF0) * fresnel_weight;
+    result.value += Rgb(bsdf.coat * fresnel * d *
+                        ggx_reflection_factor(bsdf.wo.z, bsdf.coat_slope_o, wi.z, slope_i));
+    result.pdf += bsdf.share_coat * d * ggx_visible_factor(bsdf.wo.z, bsdf.coat_slope_o);
+  }
+  return result;
+}
+
+inline Rgb eval_bsdf(const Bsdf& bsdf, Vec3f wi) {
+  return eval_bsdf_with_pdf(bsdf, wi).value;
+}
+inline float pdf_bsdf(const Bsdf& bsdf, Vec3f wi) {
+  return eval_bsdf_with_pdf(bsdf, wi).pdf;
+}
+
+// Every lobe is a delta: next-event estimation would find nothing.
+inline bool is_delta_only(const Bsdf& bsdf) {
+  return bsdf.share_diffuse == 0.0F && (bsdf.share_specular == 0.0F || bsdf.alpha == 0.0F) &&
+         (bsdf.share_glass == 0.0F || bsdf.glass_alpha == 0.0F) &&
+         (bsdf.share_coat == 0.0F || bsdf.coat_alpha == 0.0F);
+}
+
+// u_lobe selects, u samples; all in [0, 1). Nothing if the sample is below a horizon or the surface
+// black.
+std::optional<BsdfSample> sample_bsdf(const Bsdf& bsdf, float u_lobe, Vec2f u);
+
+}  // namespace arris

@@ -1,0 +1,66 @@
+// rectangle_light.h — a one-sided rectangle (or parallelogram) that emits
+// What       sampled uniformly by solid angle where it fills a good part of the hemisphere, by area
+// where
+//            it is far (kNearSolidAngle): there the densities agree within a few percent, and an
+//            area sample costs a tenth. Parallelograms whose edges aren't orthogonal are sampled by
+//            area always.
+// In / Out   world frame; pdfs per solid angle at the point
+// Source     C. Ureña et al., "An Area-Preserving Parametrization for Spherical Rectangles", EGSR
+// 2013
+#pragma once
+
+#include <cmath>
+#include <optional>
+
+#include "arris/math.h"
+#include "arris/scene.h"
+
+namespace arris {
+
+struct RectangleEmitter {
+  Vec3f corner, edge_u, edge_v;
+  Vec3f normal;          // unit, front side
+  Vec3f axis_u, axis_v;  // unit edges
+  Vec3f dual_u, dual_v;  // dot(p - corner, dual) is the coordinate along the edge, 0…1 inside
+  Rgb radiance;
+  float length_u = 1, length_v = 1;
+  float area = 1;
+  bool orthogonal = true;
+  bool visible_to_camera = true;
+};
+
+RectangleEmitter make_rectangle_emitter(const AreaLight& light);
+
+struct RectangleSample {
+  Vec3f wi;
+  float distance = 0;
+  float pdf = 0;
+};
+
+// Nothing if the point is behind the rectangle or in its plane.
+std::optional<RectangleSample> sample_rectangle(const RectangleEmitter& light, Vec3f point,
+                                                Vec2f u);
+
+// wi: unit, hits the rectangle's front at `distance` from the point.
+float pdf_rectangle(const RectangleEmitter& light, Vec3f point, Vec3f wi, float distance);
+
+// Distance along dir (in units of its length) to the front of the rectangle, if within (0, t_max).
+inline std::optional<float> intersect_rectangle(const RectangleEmitter& light, Vec3f origin,
+                                                Vec3f dir, float t_max) {
+  const float cos_l = dot(dir, light.normal);
+  if (cos_l >= 0.0F) {
+    return std::nullopt;
+  }
+  const Vec3f to_corner = light.corner - origin;
+  const float t = dot(to_corner, light.normal) / cos_l;
+  if (!(t > 0.0F && t < t_max)) {
+    return std::nullopt;
+  }
+  const Vec3f p = dir * t - to_corner;
+  const float u = dot(p, light.dual_u);
+  const float v = dot(p, light.dual_v);
+  const bool inside = u >= 0.0F && u <= 1.0F && v >= 0.0F && v <= 1.0F;
+  return inside ? std::optional<float>(t) : std::nullopt;
+}
+
+}  // namespace arris
