@@ -1,0 +1,27 @@
+// mesh_readers.h — plain mesh files in memory to scenes
+// What       one function per format; docs/formats.md says what each takes, maps and refuses
+// In         the whole file; `file`: its name, for errors and for objects without a name
+// Guarantee  a scene of at least one triangle with finite positions and indices in range, or one
+//            Error; memory stays within a small multiple of the file's size whatever the counts in
+//            it say (tests/io/*_reader_test.cpp cut every byte; tests/fuzz)
+// Errors     kind input; where = "file:line" in text, "file" in binary with the element and byte
+// Cost       linear in the file, except polygons: see polygon.h
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "arris/scene.h"
+
+namespace arris {
+
+Scene read_stl(std::span<const std::uint8_t> bytes, const std::string& file);
+// Binary by its size, or ASCII by its first words.
+bool looks_like_stl(std::span<const std::uint8_t> bytes);
+
+}  // namespace arris
