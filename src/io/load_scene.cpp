@@ -1,0 +1,95 @@
+// load_scene.cpp — the table of formats and the way from a path to a scene
+#include <algorithm>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "arris/error.h"
+#include "arris/io.h"
+#include "base/nearest_name.h"
+#include "base/utf8_text.h"
+#include "io/file_bytes.h"
+#include "io/mesh_readers.h"
+
+namespace arris {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct SceneFile {
+  const fs::path& path;
+  std::string name;  // the path as text, for errors
+  std::span<const std::uint8_t> bytes;
+};
+
+struct Format {
+  std::string_view extension;
+  std::string_view label;
+  Scene (*read)(const SceneFile& file);
+  // By content, for files with another format's extension; may be null.
+  bool (*recognises)(std::span<const std::uint8_t> bytes);
+};
+
+// One row a format; the first that recognises a file's content names it.
+constexpr Format kFormats[] = {
+    {".stl", "STL", [](const SceneFile& f) { return read_stl(f.bytes, f.name); }, looks_like_stl},
+};
+
+std::string lower(std::string text) {
+  std::transform(text.begin(), text.end(), text.begin(),
+                 [](char c) { return c >= 'A' && c <= 'Z' ? char(c + ('a' - 'A')) : c; });
+  return text;
+}
+
+std::string join(const std::vector<std::string>& words) {
+  std::string joined;
+  for (const std::string& word : words) joined += (joined.empty() ? "" : " ") + word;
+  return joined;
+}
+
+const Format& format_of(const fs::path& path) {
+  const std::string extension = lower(path.extension().string());
+  for (const Format& format : kFormats) {
+    if (format.extension == extension) return format;
+  }
+  const std::vector<std::string> known = scene_extensions();
+  const std::string read = "Arris reads " + join(known);
+  if (extension.empty()) {
+    throw Error(Error::Kind::input, path.string(),
+                "has no extension that says its format; " + read);
+  }
+  throw Error(Error::Kind::input, path.string(),
+              "the extension " + quoted(extension) + " is not known" +
+                  did_you_mean(extension, known) + "; " + read);
+}
+
+// A reader's complaint about a file of another format would mislead.
+void check_content(const Format& format, const SceneFile& file) {
+  if (format.recognises != nullptr && format.recognises(file.bytes)) return;
+  for (const Format& other : kFormats) {
+    if (other.recognises == nullptr || !other.recognises(file.bytes)) continue;
+    throw Error(Error::Kind::input, file.name,
+                "holds " + std::string(other.label) + " data, not " + std::string(format.label) +
+                    "; give it the extension " + std::string(other.extension));
+  }
+}
+
+}  // namespace
+
+std::vector<std::string> scene_extensions() {
+  std::vector<std::string> extensions;
+  for (const Format& format : kFormats) extensions.emplace_back(format.extension);
+  return extensions;
+}
+
+Scene load_scene(const fs::path& path) {
+  const Format& format = format_of(path);
+  const std::vector<std::uint8_t> bytes = read_file_bytes(path);
+  const SceneFile file{path, path.string(), bytes};
+  if (bytes.empty()) throw Error(Error::Kind::input, file.name, "is empty; a model is needed");
+  check_content(format, file);
+  return format.read(file);
+}
+
+}  // namespace arris
