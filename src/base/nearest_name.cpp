@@ -55,7 +55,7 @@ std::optional<std::string> find_nearest_name(std::string_view word,
 
 std::string did_you_mean(std::string_view word, std::span<const std::string> known) {
   const std::optional<std::string> nearest = find_nearest_name(word, known);
-  return nearest ? "; did you mean " + quoted(*nearest) + "?" : "";
+  return nearest ? "; did you mean " + in_quotes(*nearest) + "?" : "";
 }
 
 }  // namespace arris

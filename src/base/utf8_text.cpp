@@ -6,7 +6,7 @@
 namespace arris {
 namespace {
 
-constexpr std::size_t kMaxQuotedBytes = 60;
+constexpr std::size_t kMaxShownBytes = 60;
 
 // Bytes of the well-formed sequence at the start of text (Unicode 15, table 3-7); 0 if there is
 // none.
@@ -44,11 +44,11 @@ bool is_utf8(std::string_view text) {
   return true;
 }
 
-std::string quoted(std::string_view text) {
+std::string in_quotes(std::string_view text) {
   std::string shown = "\"";
   while (!text.empty()) {
     const std::size_t length = sequence_length(text);
-    if (shown.size() + length > kMaxQuotedBytes) {
+    if (shown.size() + length > kMaxShownBytes) {
       shown += "…";
       break;
     }

@@ -11,6 +11,6 @@ bool is_utf8(std::string_view text);
 
 // In double quotes for a message: control characters and bytes that are not UTF-8 become U+FFFD,
 // text longer than 60 bytes is cut and ends in "…".
-std::string quoted(std::string_view text);
+std::string in_quotes(std::string_view text);
 
 }  // namespace arris

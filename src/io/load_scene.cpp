@@ -60,7 +60,7 @@ const Format& format_of(const fs::path& path) {
                 "has no extension that says its format; " + read);
   }
   throw Error(Error::Kind::input, path.string(),
-              "the extension " + quoted(extension) + " is not known" +
+              "the extension " + in_quotes(extension) + " is not known" +
                   did_you_mean(extension, known) + "; " + read);
 }
 

@@ -21,11 +21,11 @@ std::string name_from_file(const std::string& file) {
 
 std::string problem_with_name(std::string_view name) {
   if (name.size() > kMaxNameBytes) {
-    return "the name " + quoted(name) + " has " + std::to_string(name.size()) +
+    return "the name " + in_quotes(name) + " has " + std::to_string(name.size()) +
            " bytes; use at most " + std::to_string(kMaxNameBytes);
   }
   if (!is_utf8(name)) {
-    return "the name " + quoted(name) + " is not UTF-8 text; save the file as UTF-8 or rename it";
+    return "the name " + in_quotes(name) + " is not UTF-8 text; save the file as UTF-8 or rename it";
   }
   return "";
 }

@@ -133,7 +133,8 @@ class AsciiReader {
       const std::string_view word = text_.word_of_text();
       if (word.empty()) break;
       if (!equal_ignoring_case(word, "solid")) {
-        throw text_.error("found " + quoted(word) + " where \"solid\" should start the next solid");
+        throw text_.error("found " + in_quotes(word) +
+                          " where \"solid\" should start the next solid");
       }
       read_solid();
     }
@@ -195,12 +196,14 @@ class AsciiReader {
     return text_.to_number(word, what);
   }
 
-  void expect(std::string_view keyword) { check(text_.word_of_text(), keyword, quoted(keyword)); }
+  void expect(std::string_view keyword) {
+    check(text_.word_of_text(), keyword, in_quotes(keyword));
+  }
 
   void check(std::string_view word, std::string_view keyword, const std::string& expected) {
     if (word == keyword || equal_ignoring_case(word, keyword)) return;
     if (word.empty()) fail_end(expected);
-    throw text_.error("found " + quoted(word) + " where " + expected + " should be");
+    throw text_.error("found " + in_quotes(word) + " where " + expected + " should be");
   }
 
   [[noreturn]] void fail_end(std::string_view expected) {

@@ -133,7 +133,7 @@ float TextScanner::to_number(std::string_view word, std::string_view what) const
   const std::string_view plain = without_plus(word);
   const auto [stop, problem] = std::from_chars(plain.data(), plain.data() + plain.size(), value);
   const bool whole = !plain.empty() && stop == plain.data() + plain.size();
-  const std::string place = std::string(what) + " is " + quoted(word);
+  const std::string place = std::string(what) + " is " + in_quotes(word);
   if (whole && problem != std::errc::invalid_argument && !std::isfinite(value)) {
     throw error(place + ", which is not finite; export the model again");
   }
