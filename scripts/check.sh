@@ -42,9 +42,9 @@ step_asan() {
 
 # The modules that start threads; the rest of the tests would find nothing here.
 step_tsan() {
-  local threaded='render'
+  local threaded='base|render'
   cmake --preset tsan
-  cmake --build --preset tsan --target test_render
+  cmake --build --preset tsan --target test_base test_render
   TSAN_OPTIONS="suppressions=$PWD/scripts/tsan.supp:halt_on_error=1:second_deadlock_stack=1" \
     ctest --preset tsan --parallel "$jobs" -R "^($threaded)\\." --no-tests=error
 }
