@@ -1,0 +1,37 @@
+// picture_file.h — pictures with the text that files carry beside the pixels
+// What       load_picture() and save_picture() of arris/io.h on bytes and with attributes
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "arris/image.h"
+#include "arris/io.h"
+
+namespace arris {
+
+using Attributes = std::vector<std::pair<std::string, std::string>>;
+
+struct PictureFile {
+  Picture picture;
+  Attributes attributes;  // string attributes of an EXR file; else empty
+};
+
+PictureFile load_picture_file(const std::filesystem::path& path);
+
+// The format is what the first bytes say. name: for messages.
+PictureFile decode_picture(std::span<const std::uint8_t> bytes, const std::string& name);
+
+enum class PictureFormat { png, jpeg, exr, pfm };
+// By extension; throws Error (kind input) for any other, naming those that are known.
+PictureFormat picture_format(const std::filesystem::path& path);
+
+// Layers are part of EXR only.
+std::vector<std::uint8_t> encode_picture(const Picture& picture, PictureFormat format,
+                                         const SaveOptions& options = {});
+
+}  // namespace arris
