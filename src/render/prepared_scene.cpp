@@ -47,9 +47,6 @@ PreparedScene::~PreparedScene() = default;
 const Scene& PreparedScene::scene() const {
   return geometry_->scene;
 }
-const EmbreeScene& PreparedScene::embree() const {
-  return geometry_->embree;
-}
 
 std::shared_ptr<const PreparedScene> prepare_scene(Scene scene, const PrepareOptions& options) {
   const auto start = std::chrono::steady_clock::now();

@@ -67,7 +67,7 @@ class PreparedScene {
   ~PreparedScene();
 
   [[nodiscard]] const Scene& scene() const;
-  [[nodiscard]] const EmbreeScene& embree() const;
+  [[nodiscard]] const SceneGeometry& geometry() const { return *geometry_; }
   [[nodiscard]] const PrepareStats& stats() const { return stats_; }
 
   // The closest surface in (t_min, t_max).

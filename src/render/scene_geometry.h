@@ -1,18 +1,61 @@
 // scene_geometry.h — the part of a prepared scene that a change of radius leaves alone
 #pragma once
 
+#include <cstdint>
+#include <vector>
+
 #include "arris/scene.h"
 #include "geometry/embree_scene.h"
+#include "shading/lights.h"
+#include "shading/surface_material.h"
 
 namespace arris {
+
+inline constexpr std::uint32_t kNoEmitter = ~std::uint32_t{0};
+
+// A material as the renderers meet it.
+struct PreparedMaterial {
+  SurfaceMaterial factors;  // all there is to it unless textured
+  bool textured = false;
+  bool emissive = false;
+  bool translucent = false;  // opacity may be below 1
+};
+
+// Emissive triangles by number, as make_light_set() was given them.
+struct EmitterIndex {
+  // Per geometry: where its triangles start in `emitter_of_triangle`; kNoEmitter: it has none.
+  std::vector<std::uint32_t> first;
+  std::vector<std::uint32_t> emitter_of_triangle;
+  struct Place {
+    std::uint32_t geometry, triangle;
+  };
+  std::vector<Place> places;  // per emitter
+};
 
 struct SceneGeometry {
   Scene scene;  // camera and environment filled in
   EmbreeScene embree;
+  std::vector<PreparedMaterial> materials;
+  EmitterIndex emitter_index;
+  LightSet lights;
+  bool any_translucent = false;
   double build_seconds = 0;
 
-  SceneGeometry(Scene described, const EmbreeSceneOptions& options)
-      : scene(std::move(described)), embree(scene, options) {}
+  // Precondition: a valid scene with camera and environment.
+  SceneGeometry(Scene described, const EmbreeSceneOptions& options);
 };
+
+// World-space corners of a triangle, in the mesh's order.
+struct WorldTriangle {
+  Vec3f p0, p1, p2;
+};
+WorldTriangle instanced_triangle(const Scene& scene, const GeometryRecord& record, std::uint32_t triangle);
+inline WorldTriangle world_triangle(const Scene& scene, const GeometryRecord& record, std::uint32_t triangle) {
+  if (record.instanced) [[unlikely]] {
+    return instanced_triangle(scene, record, triangle);
+  }
+  const Triangle& t = record.triangles[triangle];
+  return {record.positions[t[0]], record.positions[t[1]], record.positions[t[2]]};
+}
 
 }  // namespace arris

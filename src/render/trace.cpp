@@ -30,24 +30,6 @@ std::uint32_t geometry_of(const RTCHit& hit) {
   return hit.instID[0] == RTC_INVALID_GEOMETRY_ID ? hit.geomID : hit.instID[0];
 }
 
-struct WorldTriangle {
-  Vec3f p0, p1, p2;
-};
-
-WorldTriangle world_triangle(const Scene& scene, const GeometryRecord& record,
-                             std::uint32_t index) {
-  const Triangle& t = record.triangles[index];
-  const WorldTriangle triangle{record.positions[t[0]], record.positions[t[1]],
-                               record.positions[t[2]]};
-  if (!record.instanced) {
-    return triangle;
-  }
-  const Affine3d& m = scene.objects[record.object.index].world_from_object;
-  return {Vec3f(transform_point(m, Vec3d(triangle.p0))),
-          Vec3f(transform_point(m, Vec3d(triangle.p1))),
-          Vec3f(transform_point(m, Vec3d(triangle.p2)))};
-}
-
 // Interpolated, in world space, on the side of the geometric normal.
 Vec3f interpolated_normal(const GeometryRecord& record, const Triangle& triangle, float u, float v,
                           Vec3f geometric_normal) {
@@ -138,7 +120,7 @@ bool PreparedScene::occluded(const TraceRay& ray) const {
 }
 
 TraceRay leave_surface(const PreparedScene& scene, const SurfaceHit& hit, Vec3f direction) {
-  const float error = scene.embree().records()[hit.geometry].position_error;
+  const float error = scene.geometry().embree.records()[hit.geometry].position_error;
   const bool outward = dot(direction, hit.geometric_normal) > 0;
   TraceRay ray;
   ray.origin = hit.position + hit.geometric_normal * (outward ? error : -error);

@@ -1,0 +1,293 @@
+#include "render/path_integrator.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+
+#include "render/surface_point.h"
+#include "shading/lights.h"
+
+namespace arris {
+namespace {
+
+// Numbers of the sampler that a vertex uses, in this order: light selection, light (2D), lobe, direction
+// (2D), roulette. Passing a translucent surface draws from dimensions of its own.
+constexpr std::uint32_t kDimensionsPerVertex = 5;
+constexpr std::uint32_t kOpacityDimensions = 1U << 16U;
+
+// Surfaces let straight through in one go; more than that only coincident sheets can cause.
+constexpr int kMaxPasses = 512;
+
+// Roulette starts here: the first vertices carry most of the light.
+constexpr int kRouletteDepth = 1;
+
+// Shadow rays to emissive triangles end this much before them.
+constexpr float kShadowEnd = 1 - 1e-4F;
+
+// The power heuristic for one sample of the strategy with density `pdf`.
+float mis_weight(float pdf, float other_pdf) {
+  const float a = pdf * pdf, b = other_pdf * other_pdf;
+  return a > 0 && std::isfinite(a) ? a / (a + b) : 1.0F;
+}
+
+struct Path {
+  const PreparedScene& scene;
+  const LightSet& lights;
+  const PathSettings& settings;
+  Sampler sampler;
+  PathRays& rays;
+
+  TraceRay ray;
+  RayKind kind = RayKind::camera;
+  Rgb throughput{1, 1, 1};
+  Rgb radiance;
+  // Where and how the last scattering sampled `ray`; light sampling could have found the same emitter
+  // unless that was a delta lobe or the camera.
+  Vec3f vertex;
+  float bsdf_pdf = 0;
+  bool light_sampled = false;
+  std::uint32_t passes = 0;
+  float passed_distance = 0;
+
+  // Weight of an emitter that BSDF sampling found and light sampling finds with density light_pdf.
+  template <class LightPdf>
+  [[nodiscard]] float found_weight(const LightPdf& light_pdf) const {
+    if (!light_sampled) {
+      return 1;
+    }
+    const float pdf = light_pdf();
+    switch (settings.strategies) {
+      case Strategies::light_sampling:
+        return pdf > 0 ? 0.0F : 1.0F;
+      case Strategies::bsdf_sampling:
+        return 1;
+      case Strategies::both:
+        break;
+    }
+    return mis_weight(bsdf_pdf, pdf);
+  }
+
+  void add_area_lights(float t_end);
+  void add_background();
+  void add_emission(const SurfaceHit& hit, Rgb emission);
+  [[nodiscard]] float visibility(TraceRay shadow_ray);
+  void add_sampled_light(const SurfaceHit& hit, const Frame& frame, const Bsdf& bsdf);
+  [[nodiscard]] bool scatter(const SurfaceHit& hit, const Frame& frame, const Bsdf& bsdf);
+  [[nodiscard]] bool survives_roulette();
+  [[nodiscard]] bool passes_through(const SurfaceHit& hit, float opacity);
+};
+
+void Path::add_area_lights(float t_end) {
+  for (std::uint32_t i = 0; i < lights.rectangles.size(); ++i) {
+    const RectangleEmitter& light = lights.rectangles[i];
+    if (kind == RayKind::camera && !light.visible_to_camera) {
+      continue;
+    }
+    if (const std::optional<float> t = intersect_rectangle(light, ray.origin, ray.direction, t_end)) {
+      const float weight =
+          found_weight([&] { return pdf_area_light(lights, i, vertex, ray.direction, *t + passed_distance); });
+      radiance += throughput * light.radiance * weight;
+    }
+  }
+}
+
+void Path::add_background() {
+  if (kind == RayKind::camera) {
+    radiance += throughput * eval_backdrop(lights, ray.direction);
+    return;
+  }
+  const EnvironmentValue value = eval_environment_with_pdf(lights, ray.direction);
+  radiance += throughput * value.radiance * found_weight([&] { return value.pdf; });
+}
+
+void Path::add_emission(const SurfaceHit& hit, Rgb emission) {
+  if (max_component(emission) <= 0) {
+    return;
+  }
+  const EmitterIndex& index = scene.geometry().emitter_index;
+  const std::uint32_t first = index.first[hit.geometry];
+  const std::uint32_t emitter = first == kNoEmitter ? kNoEmitter : index.emitter_of_triangle[first + hit.triangle];
+  // Light sampling knows the mesh's triangles: what rounding moved it never finds.
+  const bool can_be_sampled = emitter != kNoEmitter && hit.feature == Feature::face;
+  const float weight =
+      can_be_sampled
+          ? found_weight([&] { return pdf_emissive_triangle(lights, emitter, ray.direction, hit.t + passed_distance); })
+          : 1.0F;
+  radiance += throughput * emission * weight;
+}
+
+// 1 where nothing is between, 0 behind an opaque surface; what opacity lets through otherwise.
+float Path::visibility(TraceRay shadow_ray) {
+  ++rays.total;
+  if (!scene.geometry().any_translucent) [[likely]] {
+    return scene.occluded(shadow_ray) ? 0.0F : 1.0F;
+  }
+  float transmittance = 1;
+  for (int pass = 0; pass < kMaxPasses; ++pass) {
+    const std::optional<SurfaceHit> hit = scene.intersect(shadow_ray);
+    if (!hit) {
+      return transmittance;
+    }
+    const PreparedMaterial& material = scene.geometry().materials[hit->material.index];
+    if (!material.translucent) {
+      return 0;
+    }
+    const Scene& described = scene.scene();
+    transmittance *=
+        1 - eval_opacity(described.materials[hit->material.index], described.textures, hit->uv);
+    if (transmittance <= 0) {
+      return 0;
+    }
+    const float t_max = shadow_ray.t_max - hit->t;
+    shadow_ray = leave_surface(scene, *hit, shadow_ray.direction);
+    shadow_ray.t_max = t_max;
+    ++rays.total;
+  }
+  return 0;
+}
+
+bool same_side(Vec3f direction, const SurfaceHit& hit, bool transmitted) {
+  const float cos_theta = dot(direction, hit.geometric_normal);
+  const bool leaves_outside = cos_theta > 0;
+  return leaves_outside == ((hit.side == Side::outside) != transmitted);
+}
+
+void Path::add_sampled_light(const SurfaceHit& hit, const Frame& frame, const Bsdf& bsdf) {
+  const float u_select = sampler.next_1d();
+  const Vec2f u = sampler.next_2d();
+  if (settings.strategies == Strategies::bsdf_sampling && lights.points.empty() && lights.spots.empty() &&
+      lights.directionals.empty()) {
+    return;
+  }
+  const std::optional<LightSample> light = sample_light(lights, hit.position, u_select, u);
+  if (!light) {
+    return;
+  }
+  const Vec3f wi = local_from_world(frame, light->wi);
+  if (!same_side(light->wi, hit, wi.z < 0)) {
+    return;
+  }
+  const BsdfValue f = eval_bsdf_with_pdf(bsdf, wi);
+  if (max_component(f.value) <= 0) {
+    return;
+  }
+  Rgb emitted = light->radiance;
+  TraceRay shadow_ray = leave_surface(scene, hit, light->wi);
+  shadow_ray.t_max = light->distance;
+  if (light->kind == EmitterKind::triangle) {
+    shadow_ray.t_max *= kShadowEnd;
+    emitted = emission_at(scene.geometry(), light->index, light->barycentric, emitted);
+  }
+  const bool alone = light->is_delta || settings.strategies == Strategies::light_sampling;
+  float weight = alone ? 1.0F : mis_weight(light->pdf, f.pdf);
+  if (!light->is_delta && settings.strategies == Strategies::bsdf_sampling) {
+    weight = 0;
+  }
+  const Rgb arriving = throughput * f.value * emitted * (weight / light->pdf);
+  if (max_component(arriving) > 0) {
+    radiance += arriving * visibility(shadow_ray);
+  }
+}
+
+bool Path::scatter(const SurfaceHit& hit, const Frame& frame, const Bsdf& bsdf) {
+  const float u_lobe = sampler.next_1d();
+  const std::optional<BsdfSample> sample = sample_bsdf(bsdf, u_lobe, sampler.next_2d());
+  if (!sample) {
+    return false;
+  }
+  const Vec3f direction = normalize(world_from_local(frame, sample->wi));
+  if (!same_side(direction, hit, sample->is_transmission)) {
+    return false;
+  }
+  throughput *= sample->weight;
+  bsdf_pdf = sample->pdf;
+  light_sampled = !sample->is_delta && has_emitters(lights);
+  vertex = hit.position;
+  kind = RayKind::scattered;
+  passed_distance = 0;
+  ray = leave_surface(scene, hit, direction);
+  return true;
+}
+
+bool Path::survives_roulette() {
+  const float survival = std::sqrt(max_component(throughput));
+  if (survival >= 1) {
+    return true;
+  }
+  if (sampler.next_1d() >= survival) {
+    return false;
+  }
+  throughput *= 1 / survival;
+  return true;
+}
+
+bool Path::passes_through(const SurfaceHit& hit, float opacity) {
+  if (opacity >= 1) [[likely]] {
+    return false;
+  }
+  sampler.set_dimension(kOpacityDimensions + passes);
+  if (sampler.next_1d() < opacity) {
+    return false;
+  }
+  ++passes;
+  passed_distance += hit.t;
+  ray = leave_surface(scene, hit, ray.direction);
+  return true;
+}
+
+void fill_first_hit(FirstHit& first, const SurfaceHit& hit, const SurfaceMaterial& material, const Frame& frame,
+                    float distance) {
+  first.hit = true;
+  first.rounded = hit.rounding_seen;
+  first.albedo = material.base_color;
+  first.normal = frame.normal;
+  first.depth = distance;
+  first.object = hit.object.index + 1;
+}
+
+}  // namespace
+
+PathSample trace_path(const PreparedScene& scene, const PathSettings& settings, TraceRay camera_ray, Sampler sampler,
+                      PathRays& rays) {
+  PathSample result;
+  Path path{scene, scene.geometry().lights, settings, sampler, rays, camera_ray};
+  for (int depth = 0; path.passes < kMaxPasses;) {
+    const std::optional<SurfaceHit> hit = scene.intersect(path.ray);
+    ++rays.total;
+    path.add_area_lights(hit ? hit->t : std::numeric_limits<float>::infinity());
+    if (!hit) {
+      path.add_background();
+      break;
+    }
+    rays.rounded += hit->rounding_seen ? 1 : 0;
+    SurfaceMaterial storage;
+    const SurfaceMaterial& material = material_at(scene, *hit, storage);
+    if (path.passes_through(*hit, material.opacity)) {
+      continue;
+    }
+    path.add_emission(*hit, material.emission);
+    const Frame frame = shading_frame(scene, *hit, material);
+    if (path.kind == RayKind::camera) {
+      fill_first_hit(result.first, *hit, material, frame, hit->t + path.passed_distance);
+    }
+    if (depth == settings.max_depth) {
+      break;
+    }
+    const Vec3f wo = local_from_world(frame, -path.ray.direction);
+    const Bsdf bsdf = make_bsdf(material, wo, hit->side == Side::inside ? MediumSide::inside : MediumSide::outside);
+    path.sampler.set_dimension(kCameraDimensions + std::uint32_t(depth) * kDimensionsPerVertex);
+    if (has_emitters(path.lights) && !is_delta_only(bsdf)) {
+      path.add_sampled_light(*hit, frame, bsdf);
+    }
+    path.sampler.set_dimension(kCameraDimensions + std::uint32_t(depth) * kDimensionsPerVertex + 2);
+    if (!path.scatter(*hit, frame, bsdf) || (depth >= kRouletteDepth && !path.survives_roulette())) {
+      break;
+    }
+    ++depth;
+  }
+  result.radiance = path.radiance;
+  return result;
+}
+
+}  // namespace arris

@@ -1,0 +1,45 @@
+// path_integrator.h — the radiance of one camera ray by path tracing
+// What       next-event estimation and BSDF sampling at every vertex, combined by multiple importance
+//            sampling (power heuristic). At most `max_depth` scatterings; emission found after the last
+//            one counts. Russian roulette by throughput.
+// Guarantee  unbiased but for the depth limit and the last millionths of shadow rays; no clamping.
+//            (tests/render/closed_form_test.cpp, furnace_test.cpp; the two strategies alone agree:
+//            mis_test.cpp)
+// Limits     transmitting surfaces block shadow rays: what light does through glass is found by BSDF
+//            sampling alone. Area lights block nothing.
+// Source     E. Veach, "Robust Monte Carlo Methods for Light Transport Simulation", 1997, chapter 9
+#pragma once
+
+#include <cstdint>
+
+#include "arris/math.h"
+#include "base/sobol.h"
+#include "render/film.h"
+#include "render/prepared_scene.h"
+
+namespace arris {
+
+// Which estimators a path combines; the single ones are for tests.
+enum class Strategies { both, light_sampling, bsdf_sampling };
+
+struct PathSettings {
+  int max_depth = 8;
+  Strategies strategies = Strategies::both;
+};
+
+struct PathRays {
+  std::uint64_t total = 0;
+  std::uint64_t rounded = 0;
+};
+
+struct PathSample {
+  Rgb radiance;
+  FirstHit first;
+};
+
+// The sampler's first kCameraDimensions are the camera's. Adds the rays traced to `rays`.
+inline constexpr std::uint32_t kCameraDimensions = 1;
+PathSample trace_path(const PreparedScene& scene, const PathSettings& settings, TraceRay camera_ray, Sampler sampler,
+                      PathRays& rays);
+
+}  // namespace arris
