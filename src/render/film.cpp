@@ -28,7 +28,9 @@ Image make_gray_image(int width_px, int height_px, std::size_t count, const Valu
 
 }  // namespace
 
-std::vector<std::string> film_layer_names() { return {"albedo", "normal", "depth", "object", "rounded"}; }
+std::vector<std::string> film_layer_names() {
+  return {"albedo", "normal", "depth", "object", "rounded"};
+}
 
 Film::Film(int width_px, int height_px, const std::vector<std::string>& layers)
     : width_px_(width_px), height_px_(height_px), has_layers_(!layers.empty()) {
@@ -86,9 +88,11 @@ Image Film::layer(const std::string& name, double scale) const {
     });
   }
   if (name == "object") {
-    return make_gray_image(width_px_, height_px_, object_.size(), [&](std::size_t i) { return object_[i]; });
+    return make_gray_image(width_px_, height_px_, object_.size(),
+                           [&](std::size_t i) { return object_[i]; });
   }
-  return make_gray_image(width_px_, height_px_, rounded_.size(), [&](std::size_t i) { return rounded_[i] * scale; });
+  return make_gray_image(width_px_, height_px_, rounded_.size(),
+                         [&](std::size_t i) { return rounded_[i] * scale; });
 }
 
 Picture Film::picture(std::uint32_t samples, const std::vector<std::string>& layers) const {

@@ -21,8 +21,8 @@ struct FirstHit {
   bool hit = false;
   bool rounded = false;  // on a rounded edge or corner
   Rgb albedo;
-  Vec3f normal;             // shading normal, towards the camera; 0 without a hit
-  float depth = 0;          // distance from the camera
+  Vec3f normal;              // shading normal, towards the camera; 0 without a hit
+  float depth = 0;           // distance from the camera
   std::uint32_t object = 0;  // the object's index plus 1; 0: none
 };
 
@@ -42,7 +42,8 @@ class Film {
 
   // Means over `samples` samples. "depth" is the mean over the samples that hit something and 0 where none
   // did; "normal" and "albedo" count a miss as 0.
-  [[nodiscard]] Picture picture(std::uint32_t samples, const std::vector<std::string>& layers) const;
+  [[nodiscard]] Picture picture(std::uint32_t samples,
+                                const std::vector<std::string>& layers) const;
 
  private:
   [[nodiscard]] Image layer(const std::string& name, double scale) const;
@@ -50,7 +51,7 @@ class Film {
   int width_px_, height_px_;
   bool has_layers_;
   std::vector<Vec3d> color_;
-  std::vector<Vec3d> albedo_, normal_;       // empty unless asked for
+  std::vector<Vec3d> albedo_, normal_;  // empty unless asked for
   std::vector<double> depth_, rounded_;
   std::vector<std::uint32_t> depth_hits_, object_;
   std::vector<std::uint8_t> object_known_;

@@ -41,10 +41,10 @@ struct Path {
   TraceRay ray;
   RayKind kind = RayKind::camera;
   Rgb throughput{1, 1, 1};
-  Rgb radiance;
+  Rgb radiance{};
   // Where and how the last scattering sampled `ray`; light sampling could have found the same emitter
   // unless that was a delta lobe or the camera.
-  Vec3f vertex;
+  Vec3f vertex{};
   float bsdf_pdf = 0;
   bool light_sampled = false;
   std::uint32_t passes = 0;
@@ -68,6 +68,19 @@ struct Path {
     return mis_weight(bsdf_pdf, pdf);
   }
 
+  // Weight of an emitter that light sampling drew.
+  [[nodiscard]] float sampled_weight(float light_pdf, float other_pdf) const {
+    switch (settings.strategies) {
+      case Strategies::light_sampling:
+        return 1;
+      case Strategies::bsdf_sampling:
+        return 0;
+      case Strategies::both:
+        break;
+    }
+    return mis_weight(light_pdf, other_pdf);
+  }
+
   void add_area_lights(float t_end);
   void add_background();
   void add_emission(const SurfaceHit& hit, Rgb emission);
@@ -84,9 +97,10 @@ void Path::add_area_lights(float t_end) {
     if (kind == RayKind::camera && !light.visible_to_camera) {
       continue;
     }
-    if (const std::optional<float> t = intersect_rectangle(light, ray.origin, ray.direction, t_end)) {
-      const float weight =
-          found_weight([&] { return pdf_area_light(lights, i, vertex, ray.direction, *t + passed_distance); });
+    if (const std::optional<float> t =
+            intersect_rectangle(light, ray.origin, ray.direction, t_end)) {
+      const float weight = found_weight(
+          [&] { return pdf_area_light(lights, i, vertex, ray.direction, *t + passed_distance); });
       radiance += throughput * light.radiance * weight;
     }
   }
@@ -107,13 +121,14 @@ void Path::add_emission(const SurfaceHit& hit, Rgb emission) {
   }
   const EmitterIndex& index = scene.geometry().emitter_index;
   const std::uint32_t first = index.first[hit.geometry];
-  const std::uint32_t emitter = first == kNoEmitter ? kNoEmitter : index.emitter_of_triangle[first + hit.triangle];
+  const std::uint32_t emitter =
+      first == kNoEmitter ? kNoEmitter : index.emitter_of_triangle[first + hit.triangle];
   // Light sampling knows the mesh's triangles: what rounding moved it never finds.
   const bool can_be_sampled = emitter != kNoEmitter && hit.feature == Feature::face;
-  const float weight =
-      can_be_sampled
-          ? found_weight([&] { return pdf_emissive_triangle(lights, emitter, ray.direction, hit.t + passed_distance); })
-          : 1.0F;
+  const float weight = can_be_sampled ? found_weight([&] {
+    return pdf_emissive_triangle(lights, emitter, ray.direction, hit.t + passed_distance);
+  })
+                                      : 1.0F;
   radiance += throughput * emission * weight;
 }
 
@@ -156,10 +171,6 @@ bool same_side(Vec3f direction, const SurfaceHit& hit, bool transmitted) {
 void Path::add_sampled_light(const SurfaceHit& hit, const Frame& frame, const Bsdf& bsdf) {
   const float u_select = sampler.next_1d();
   const Vec2f u = sampler.next_2d();
-  if (settings.strategies == Strategies::bsdf_sampling && lights.points.empty() && lights.spots.empty() &&
-      lights.directionals.empty()) {
-    return;
-  }
   const std::optional<LightSample> light = sample_light(lights, hit.position, u_select, u);
   if (!light) {
     return;
@@ -172,17 +183,16 @@ void Path::add_sampled_light(const SurfaceHit& hit, const Frame& frame, const Bs
   if (max_component(f.value) <= 0) {
     return;
   }
+  const float weight = light->is_delta ? 1.0F : sampled_weight(light->pdf, f.pdf);
+  if (weight <= 0) {
+    return;
+  }
   Rgb emitted = light->radiance;
   TraceRay shadow_ray = leave_surface(scene, hit, light->wi);
   shadow_ray.t_max = light->distance;
   if (light->kind == EmitterKind::triangle) {
     shadow_ray.t_max *= kShadowEnd;
-    emitted = emission_at(scene.geometry(), light->index, light->barycentric, emitted);
-  }
-  const bool alone = light->is_delta || settings.strategies == Strategies::light_sampling;
-  float weight = alone ? 1.0F : mis_weight(light->pdf, f.pdf);
-  if (!light->is_delta && settings.strategies == Strategies::bsdf_sampling) {
-    weight = 0;
+    emitted = sampled_emission(scene.geometry(), *light);
   }
   const Rgb arriving = throughput * f.value * emitted * (weight / light->pdf);
   if (max_component(arriving) > 0) {
@@ -236,8 +246,8 @@ bool Path::passes_through(const SurfaceHit& hit, float opacity) {
   return true;
 }
 
-void fill_first_hit(FirstHit& first, const SurfaceHit& hit, const SurfaceMaterial& material, const Frame& frame,
-                    float distance) {
+void fill_first_hit(FirstHit& first, const SurfaceHit& hit, const SurfaceMaterial& material,
+                    const Frame& frame, float distance) {
   first.hit = true;
   first.rounded = hit.rounding_seen;
   first.albedo = material.base_color;
@@ -248,8 +258,8 @@ void fill_first_hit(FirstHit& first, const SurfaceHit& hit, const SurfaceMateria
 
 }  // namespace
 
-PathSample trace_path(const PreparedScene& scene, const PathSettings& settings, TraceRay camera_ray, Sampler sampler,
-                      PathRays& rays) {
+PathSample trace_path(const PreparedScene& scene, const PathSettings& settings, TraceRay camera_ray,
+                      Sampler sampler, PathRays& rays) {
   PathSample result;
   Path path{scene, scene.geometry().lights, settings, sampler, rays, camera_ray};
   for (int depth = 0; path.passes < kMaxPasses;) {
@@ -275,13 +285,15 @@ PathSample trace_path(const PreparedScene& scene, const PathSettings& settings, 
       break;
     }
     const Vec3f wo = local_from_world(frame, -path.ray.direction);
-    const Bsdf bsdf = make_bsdf(material, wo, hit->side == Side::inside ? MediumSide::inside : MediumSide::outside);
+    const Bsdf bsdf = make_bsdf(
+        material, wo, hit->side == Side::inside ? MediumSide::inside : MediumSide::outside);
     path.sampler.set_dimension(kCameraDimensions + std::uint32_t(depth) * kDimensionsPerVertex);
     if (has_emitters(path.lights) && !is_delta_only(bsdf)) {
       path.add_sampled_light(*hit, frame, bsdf);
     }
     path.sampler.set_dimension(kCameraDimensions + std::uint32_t(depth) * kDimensionsPerVertex + 2);
-    if (!path.scatter(*hit, frame, bsdf) || (depth >= kRouletteDepth && !path.survives_roulette())) {
+    if (!path.scatter(*hit, frame, bsdf) ||
+        (depth >= kRouletteDepth && !path.survives_roulette())) {
       break;
     }
     ++depth;

@@ -39,7 +39,7 @@ struct PathSample {
 
 // The sampler's first kCameraDimensions are the camera's. Adds the rays traced to `rays`.
 inline constexpr std::uint32_t kCameraDimensions = 1;
-PathSample trace_path(const PreparedScene& scene, const PathSettings& settings, TraceRay camera_ray, Sampler sampler,
-                      PathRays& rays);
+PathSample trace_path(const PreparedScene& scene, const PathSettings& settings, TraceRay camera_ray,
+                      Sampler sampler, PathRays& rays);
 
 }  // namespace arris

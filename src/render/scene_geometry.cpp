@@ -17,7 +17,8 @@ PreparedMaterial prepare_material(const Material& material) {
 }
 
 MaterialId material_of(const GeometryRecord& record, std::uint32_t triangle) {
-  return record.triangle_materials == nullptr ? record.material : record.triangle_materials[triangle];
+  return record.triangle_materials == nullptr ? record.material
+                                              : record.triangle_materials[triangle];
 }
 
 Vec2f mix_uv(const GeometryRecord& record, const Triangle& t, Vec3f weights) {
@@ -25,7 +26,8 @@ Vec2f mix_uv(const GeometryRecord& record, const Triangle& t, Vec3f weights) {
     return {};
   }
   const Vec2f a = record.uvs[t[0]], b = record.uvs[t[1]], c = record.uvs[t[2]];
-  return {weights.x * a.x + weights.y * b.x + weights.z * c.x, weights.x * a.y + weights.y * b.y + weights.z * c.y};
+  return {weights.x * a.x + weights.y * b.x + weights.z * c.x,
+          weights.x * a.y + weights.y * b.y + weights.z * c.y};
 }
 
 // Textured emission is averaged over four points: it decides how often the triangle is drawn.
@@ -35,10 +37,12 @@ Rgb mean_emission(const Scene& scene, const GeometryRecord& record, std::uint32_
     return material.emission;
   }
   constexpr float kThird = 1.0F / 3;
-  const Vec3f points[] = {{kThird, kThird, kThird}, {0.6F, 0.2F, 0.2F}, {0.2F, 0.6F, 0.2F}, {0.2F, 0.2F, 0.6F}};
+  const Vec3f points[] = {
+      {kThird, kThird, kThird}, {0.6F, 0.2F, 0.2F}, {0.2F, 0.6F, 0.2F}, {0.2F, 0.2F, 0.6F}};
   Rgb sum;
   for (const Vec3f& weights : points) {
-    sum += eval_emission(material, scene.textures, mix_uv(record, record.triangles[triangle], weights));
+    sum += eval_emission(material, scene.textures,
+                         mix_uv(record, record.triangles[triangle], weights));
   }
   return sum * 0.25F;
 }
@@ -97,17 +101,21 @@ SceneBounds bounds_of(const Scene& scene) {
 
 SceneGeometry::SceneGeometry(Scene described, const EmbreeSceneOptions& options)
     : scene(std::move(described)), embree(scene, options) {
-  std::transform(scene.materials.begin(), scene.materials.end(), std::back_inserter(materials), prepare_material);
-  any_translucent =
-      std::any_of(materials.begin(), materials.end(), [](const PreparedMaterial& m) { return m.translucent; });
+  std::transform(scene.materials.begin(), scene.materials.end(), std::back_inserter(materials),
+                 prepare_material);
+  any_translucent = std::any_of(materials.begin(), materials.end(),
+                                [](const PreparedMaterial& m) { return m.translucent; });
   const std::vector<EmissiveTriangle> emitters = collect_emitters(*this, emitter_index);
   lights = make_light_set(scene.lights, *scene.environment, emitters, bounds_of(scene));
 }
 
-WorldTriangle instanced_triangle(const Scene& scene, const GeometryRecord& record, std::uint32_t triangle) {
+WorldTriangle instanced_triangle(const Scene& scene, const GeometryRecord& record,
+                                 std::uint32_t triangle) {
   const Triangle& t = record.triangles[triangle];
   const Affine3d& m = scene.objects[record.object.index].world_from_object;
-  const auto corner = [&](int i) { return Vec3f(transform_point(m, Vec3d(record.positions[t[std::size_t(i)]]))); };
+  const auto corner = [&](int i) {
+    return Vec3f(transform_point(m, Vec3d(record.positions[t[std::size_t(i)]])));
+  };
   return {corner(0), corner(1), corner(2)};
 }
 

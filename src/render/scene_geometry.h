@@ -49,8 +49,10 @@ struct SceneGeometry {
 struct WorldTriangle {
   Vec3f p0, p1, p2;
 };
-WorldTriangle instanced_triangle(const Scene& scene, const GeometryRecord& record, std::uint32_t triangle);
-inline WorldTriangle world_triangle(const Scene& scene, const GeometryRecord& record, std::uint32_t triangle) {
+WorldTriangle instanced_triangle(const Scene& scene, const GeometryRecord& record,
+                                 std::uint32_t triangle);
+inline WorldTriangle world_triangle(const Scene& scene, const GeometryRecord& record,
+                                    std::uint32_t triangle) {
   if (record.instanced) [[unlikely]] {
     return instanced_triangle(scene, record, triangle);
   }
