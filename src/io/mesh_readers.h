@@ -24,4 +24,10 @@ Scene read_stl(std::span<const std::uint8_t> bytes, const std::string& file);
 // Binary by its size, or ASCII by its first words.
 bool looks_like_stl(std::span<const std::uint8_t> bytes);
 
+Scene read_ply(std::span<const std::uint8_t> bytes, const std::string& file);
+bool looks_like_ply(std::span<const std::uint8_t> bytes);
+
+Scene read_off(std::span<const std::uint8_t> bytes, const std::string& file);
+bool looks_like_off(std::span<const std::uint8_t> bytes);
+
 }  // namespace arris

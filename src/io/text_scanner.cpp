@@ -78,6 +78,7 @@ TextScanner::TextScanner(std::span<const std::uint8_t> bytes, std::string file)
     : begin_(reinterpret_cast<const char*>(bytes.data())),
       next_(begin_),
       end_(begin_ + bytes.size()),
+      newline_(nullptr),
       file_(std::move(file)) {
   if (std::string_view(begin_, bytes.size()).starts_with("\xEF\xBB\xBF")) next_ += 3;
 }
@@ -85,9 +86,13 @@ TextScanner::TextScanner(std::span<const std::uint8_t> bytes, std::string file)
 bool TextScanner::next_line() {
   line_ = {};
   if (next_ == end_) return false;
-  const std::size_t left = std::size_t(end_ - next_);
-  const auto* newline = static_cast<const char*>(std::memchr(next_, '\n', left));
-  const char* stop = newline != nullptr ? newline : end_;
+  // Kept from line to line: a file with CR alone would be searched whole for each of its lines.
+  if (newline_ == nullptr || newline_ < next_) {
+    const std::size_t left = std::size_t(end_ - next_);
+    newline_ = static_cast<const char*>(std::memchr(next_, '\n', left));
+    if (newline_ == nullptr) newline_ = end_;
+  }
+  const char* stop = newline_;
   // Files of old Macintosh programs end lines with CR alone.
   const auto* carriage =
       static_cast<const char*>(std::memchr(next_, '\r', std::size_t(stop - next_)));
