@@ -79,7 +79,8 @@ class Solid:
 
 
 def box(name, low, high, material=None):
-    corners = [(x, y, z) for x in (low[0], high[0]) for y in (low[1], high[1]) for z in (low[2], high[2])]
+    (x0, y0, z0), (x1, y1, z1) = low, high
+    corners = [(x, y, z) for x in (x0, x1) for y in (y0, y1) for z in (z0, z1)]
     return Solid(name, corners, material)
 
 
@@ -221,7 +222,9 @@ def keypad():
     pitch, cap, left, near = 19.0, 17.4, 5.9, 5.5
     long_cap = cap + pitch
     caps = [("zero", "light", 0, 0, long_cap, cap), ("point", "light", 2, 0, cap, cap)]
-    caps += [(f"n{3 * row + column + 1}", "light", column, row + 1, cap, cap) for row in range(3) for column in range(3)]
+    for row in range(3):
+        for column in range(3):
+            caps.append((f"n{3 * row + column + 1}", "light", column, row + 1, cap, cap))
     caps += [
         ("enter", "accent", 3, 0, cap, long_cap),
         ("plus", "dark", 3, 2, cap, long_cap),

@@ -25,7 +25,8 @@ std::string problem_with_name(std::string_view name) {
            " bytes; use at most " + std::to_string(kMaxNameBytes);
   }
   if (!is_utf8(name)) {
-    return "the name " + in_quotes(name) + " is not UTF-8 text; save the file as UTF-8 or rename it";
+    return "the name " + in_quotes(name) +
+           " is not UTF-8 text; save the file as UTF-8 or rename it";
   }
   return "";
 }

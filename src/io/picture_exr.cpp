@@ -183,7 +183,8 @@ class Decoder {
       const auto first = reinterpret_cast<std::uintptr_t>(image.values.data() + c);
       const std::uintptr_t base = first - std::uintptr_t(std::int64_t(window.min.x)) * pixel -
                                   std::uintptr_t(std::int64_t(window.min.y)) * row;
-      frame.insert(channels[c], Imf::Slice(Imf::FLOAT, reinterpret_cast<char*>(base), pixel, row));
+      char* base_pointer = reinterpret_cast<char*>(base);  // NOLINT(performance-no-int-to-ptr)
+      frame.insert(channels[c], Imf::Slice(Imf::FLOAT, base_pointer, pixel, row));
     }
   }
 

@@ -88,7 +88,10 @@ TEST(PictureFile, pfm_keeps_every_value) {
 
 TEST(PictureFile, png_without_tone_mapping_returns_the_nearest_code) {
   Image image(256, 1, 3);
-  for (std::size_t i = 0; i < 768; ++i) image.values[i] = linear_from_srgb(float(i / 3) / 255);
+  for (std::size_t i = 0; i < 768; ++i) {
+    const std::size_t code = i / 3;
+    image.values[i] = linear_from_srgb(float(code) / 255);
+  }
   SaveOptions options;
   options.tone_map = false;
   const Bytes png = encode_picture({image, {}}, PictureFormat::png, options);

@@ -465,7 +465,7 @@ class MeshBuilder {
     mesh_.positions = std::move(positions);
   }
 
-  void orient(Triangle& t) {
+  void orient(Triangle& t) const {
     if (style_.inward) std::swap(t[1], t[2]);
   }
 
