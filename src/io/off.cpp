@@ -17,9 +17,9 @@
 namespace arris {
 namespace {
 
-// The shortest lines there are: "0 0 0" and "3 0 0 0", with their ends.
+// The shortest lines there are: "0 0 0" and "0", with their ends.
 constexpr std::size_t kMinVertexBytes = 6;
-constexpr std::size_t kMinFaceBytes = 8;
+constexpr std::size_t kMinFaceBytes = 2;
 constexpr std::size_t kMaxColorNumbers = 4;
 
 struct Layout {
@@ -108,6 +108,7 @@ class OffReader {
     face_count_ = count(text_.word(), "the count of faces");
     // A count of edges may follow; it often is wrong, and nobody needs it.
     if (face_count_ == 0) throw text_.error("has no faces; surfaces are needed, not points");
+    text_.skip_line();
     const std::size_t left = text_.bytes_left() + 1;  // the last line may have no end
     if (vertex_count_ > left / kMinVertexBytes ||
         face_count_ > (left - kMinVertexBytes * vertex_count_) / kMinFaceBytes) {
