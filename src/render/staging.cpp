@@ -1,0 +1,174 @@
+#include "render/staging.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "render/camera.h"
+#include "scene/material_presets.h"
+
+namespace arris {
+namespace {
+
+struct Bounds {
+  Vec3d lower{std::numeric_limits<double>::infinity()};
+  Vec3d upper{-std::numeric_limits<double>::infinity()};
+};
+
+// Axes of the ground: `up` and two more, orthonormal.
+struct GroundFrame {
+  Vec3d east, north, up;
+};
+
+GroundFrame make_ground_frame(Vec3d scene_up) {
+  const Vec3d up = normalize(scene_up);
+  const Vec3d aside = std::abs(up.x) < 0.9 ? Vec3d(1, 0, 0) : Vec3d(0, 1, 0);
+  const Vec3d north = normalize(cross(up, aside));
+  return {cross(north, up), north, up};
+}
+
+// In the frame's coordinates.
+Bounds bounds_in(const Scene& scene, const GroundFrame& frame) {
+  Bounds bounds;
+  for (const Object& object : scene.objects) {
+    for (const Vec3f& position : scene.meshes[object.mesh.index].positions) {
+      const Vec3d p = transform_point(object.world_from_object, Vec3d(position));
+      const Vec3d local{dot(p, frame.east), dot(p, frame.north), dot(p, frame.up)};
+      bounds.lower = min(bounds.lower, local);
+      bounds.upper = max(bounds.upper, local);
+    }
+  }
+  return bounds;
+}
+
+// Radii of the ground in units of the model's: solid inside, gone at its rim.
+constexpr double kSolidRadius = 4, kRimRadius = 24;
+// Below the model, so that its underside and the ground don't coincide; too little to be seen.
+constexpr double kGroundGap = 2e-4;
+
+// Opaque in the middle, transparent from the rim on; smooth at both ends, so that no ring shows.
+Texture make_fade() {
+  constexpr int kSide = 512;
+  Texture texture;
+  texture.name = "ground fade";
+  texture.width_px = texture.height_px = kSide;
+  texture.wrap_u = texture.wrap_v = Texture::Wrap::clamp;
+  for (int y = 0; y < kSide; ++y) {
+    for (int x = 0; x < kSide; ++x) {
+      const double distance =
+          std::hypot(x + 0.5 - kSide / 2.0, y + 0.5 - kSide / 2.0) / (kSide / 2.0) * kRimRadius;
+      const double t = std::clamp((kRimRadius - distance) / (kRimRadius - kSolidRadius), 0.0, 1.0);
+      const double opacity = t * t * (3 - 2 * t);
+      texture.texels.push_back({255, 255, 255, std::uint8_t(std::lround(255 * opacity))});
+    }
+  }
+  return texture;
+}
+
+Material make_ground_material(TextureId fade) {
+  Material material;
+  material.name = "ground";
+  material.base_color = Rgb(0.8F);
+  material.roughness = 1;
+  material.specular = 0;
+  material.base_color_texture = fade;
+  return material;
+}
+
+std::uint64_t add_ground(Scene& scene) {
+  const GroundFrame frame = make_ground_frame(scene.up);
+  const Bounds bounds = bounds_in(scene, frame);
+  const Vec3d size = bounds.upper - bounds.lower;
+  const double radius = std::max(length(size) / 2, 1e-6);
+  if (!std::isfinite(radius)) return 0;
+  const Vec3d middle = (bounds.lower + bounds.upper) * 0.5;
+  const Vec3d center = frame.east * middle.x + frame.north * middle.y +
+                       frame.up * (bounds.lower.z - kGroundGap * radius);
+
+  Mesh mesh;
+  mesh.name = "ground";
+  for (const auto& [u, v] : {std::pair{-1, -1}, {1, -1}, {1, 1}, {-1, 1}}) {
+    mesh.positions.emplace_back(center + frame.east * (u * kRimRadius * radius) +
+                                frame.north * (v * kRimRadius * radius));
+    mesh.uvs.push_back({float(u + 1) / 2, float(1 - v) / 2});
+  }
+  mesh.triangles = {{0, 1, 2}, {0, 2, 3}};
+  scene.textures.push_back(make_fade());
+  scene.materials.push_back(
+      make_ground_material(TextureId{std::uint32_t(scene.textures.size() - 1)}));
+  scene.meshes.push_back(std::move(mesh));
+  Object object;
+  object.name = "ground";
+  object.mesh = MeshId{std::uint32_t(scene.meshes.size() - 1)};
+  object.material = MaterialId{std::uint32_t(scene.materials.size() - 1)};
+  object.rounding = RoundingSettings{};  // none
+  scene.objects.push_back(object);
+  return 2;
+}
+
+// As readers leave it where a file has none.
+bool is_default(const Material& material) {
+  const Material plain;
+  return material.base_color == plain.base_color && material.metallic == plain.metallic &&
+         material.roughness == plain.roughness && material.transmission == plain.transmission &&
+         material.clearcoat == plain.clearcoat && material.emission == plain.emission &&
+         material.opacity == plain.opacity && !material.base_color_texture &&
+         !material.metallic_roughness_texture && !material.glossy_mix;
+}
+
+void apply_material(Scene& scene, const std::optional<Material>& material) {
+  for (Material& each : scene.materials) {
+    if (material) {
+      each = *material;
+    } else if (is_default(each)) {
+      each = *find_material_preset("plastic-grey");
+    }
+  }
+}
+
+void apply_lighting(Scene& scene, std::optional<Lighting> lighting) {
+  if (lighting) {
+    scene.lights.clear();
+    scene.environment = make_environment(*lighting, scene.up);
+  } else if (!scene.environment && scene.lights.empty()) {
+    scene.environment = make_environment(Lighting::studio, scene.up);
+  } else if (!scene.environment) {
+    scene.environment = ConstantEnvironment{};
+  }
+}
+
+}  // namespace
+
+Environment make_environment(Lighting lighting, Vec3d up) {
+  switch (lighting) {
+    case Lighting::studio:
+      return StudioEnvironment{.strength = 1, .up = up};
+    case Lighting::sky: {
+      const GroundFrame frame = make_ground_frame(up);
+      SkyEnvironment sky;
+      sky.up = up;
+      sky.sun_direction = frame.north * -0.5 - frame.east * 0.45 + frame.up * 0.75;
+      return sky;
+    }
+    case Lighting::white:
+      return ConstantEnvironment{Rgb(1.0F)};
+  }
+  return ConstantEnvironment{};
+}
+
+StagingReport stage_model(Scene& scene, const StageOptions& options) {
+  const bool has_camera = scene.camera.has_value();
+  apply_material(scene, options.material);
+  apply_lighting(scene, options.lighting);
+  if (options.automatic_rounding && !scene.rounding) {
+    RoundingSettings automatic;
+    automatic.method = RoundMethod::exact;
+    scene.rounding = automatic;
+  }
+  if (!has_camera) scene.camera = frame_scene(scene);
+  StagingReport report;
+  if (options.ground.value_or(!has_camera)) report.ground_triangles = add_ground(scene);
+  return report;
+}
+
+}  // namespace arris
