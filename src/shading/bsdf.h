@@ -80,6 +80,15 @@ inline Rgb schlick(Rgb f0, Rgb f90, float weight) {
   return f0 + (f90 - f0) * weight;
 }
 
+// `specular` changes how much is reflected, not the directions, nor where reflection is total.
+inline Refraction refract_glass(const Bsdf& bsdf, float cos_o) {
+  Refraction refraction = fresnel_dielectric(cos_o, bsdf.eta);
+  if (bsdf.fresnel_eta != bsdf.eta && refraction.cos_t > 0.0F) {
+    refraction.reflectance = fresnel_dielectric(cos_o, bsdf.fresnel_eta).reflectance;
+  }
+  return refraction;
+}
+
 // Refracted side of eval: adds to nothing, as all other lobes reflect.
 inline BsdfValue eval_glass_transmission(const Bsdf& bsdf, Vec3f wi) {
   Vec3f h = normalize(bsdf.wo + wi * bsdf.eta);
@@ -93,7 +102,7 @@ inline BsdfValue eval_glass_transmission(const Bsdf& bsdf, Vec3f wi) {
   const float jacobian = -cos_ih * bsdf.eta * bsdf.eta / (denominator * denominator);
   const float slope_i = ggx_slope(bsdf.glass_alpha, -wi.z);
   const float slope_o = bsdf.slope_o;
-  const float transmittance = 1.0F - fresnel_dielectric(cos_oh, bsdf.fresnel_eta).reflectance;
+  const float transmittance = 1.0F - refract_glass(bsdf, cos_oh).reflectance;
   const float pdf = transmittance * ggx_density(bsdf.glass_alpha, h) *
                     ggx_visible_factor(bsdf.wo.z, slope_o) * 4.0F * cos_oh * jacobian;
   const float shadowing = ggx_shadowing(bsdf.wo.z, slope_o, -wi.z, slope_i);
@@ -124,7 +133,7 @@ inline BsdfValue eval_bsdf_with_pdf(const Bsdf& bsdf, Vec3f wi) {
       result.value += schlick(bsdf.specular_f0, bsdf.specular_f90, fresnel_weight) * factor;
     }
     if (glass_share > 0.0F) {
-      const float reflectance = fresnel_dielectric(cos_oh, bsdf.fresnel_eta).reflectance;
+      const float reflectance = refract_glass(bsdf, cos_oh).reflectance;
       result.value += bsdf.glass_reflect * (factor * reflectance);
       pdf_share += glass_share * reflectance;
     }

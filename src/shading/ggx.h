@@ -15,6 +15,7 @@
 #include <cmath>
 
 #include "arris/math.h"
+#include "base/scalar.h"
 #include "base/trigonometry.h"
 
 namespace arris {
@@ -23,14 +24,6 @@ namespace arris {
 // float.
 inline constexpr float kMinAlpha = 1e-4F;
 inline constexpr float kPiF = float(kPi);
-
-// One instruction; std::fmax is not, for the sake of NaN.
-constexpr float max_of(float a, float b) {
-  return a > b ? a : b;
-}
-constexpr float min_of(float a, float b) {
-  return a < b ? a : b;
-}
 
 // In the form that stays exact about the peak, where 1 - h.z² would cancel.
 inline float ggx_density(float alpha, Vec3f h) {
