@@ -159,7 +159,9 @@ struct SkyEnvironment {
   bool sun = true;
   Vec3d up{0, 0, 1};
 };
-// Equirectangular map; the centre column looks along -Y-of-map … see docs/scene-format.md.
+// Equirectangular map seen from its middle: the centre column looks along the map's +x, the column a
+// quarter of the width to its right along -y (as Blender has it). The map's z is taken to `up` by the
+// shortest rotation, then `rotation` turns it counter-clockwise seen from above.
 struct HdrEnvironment {
   std::string name;
   int width_px = 0;

@@ -123,11 +123,13 @@ Vec3f sample_rough_glass(const Bsdf& bsdf, float u_side, Vec2f u) {
   const Vec3f h = sample_ggx_normal(bsdf.glass_alpha, bsdf.wo, u);
   const float cos_oh = dot(bsdf.wo, h);
   const Refraction glass = refract_glass(bsdf, cos_oh);
+  // What leaves to the wrong side is absorbed.
   if (u_side < glass.reflectance) {
-    return reflect(bsdf.wo, h);
+    const Vec3f wi = reflect(bsdf.wo, h);
+    return wi.z > 0.0F ? wi : Vec3f{};
   }
   const Vec3f wi = refract(bsdf.wo, h, cos_oh, glass.cos_t, bsdf.eta);
-  return wi.z < 0.0F ? wi : Vec3f{};  // refracted to the wrong side: absorbed
+  return wi.z < 0.0F ? wi : Vec3f{};
 }
 
 Vec3f sample_cosine_hemisphere(Vec2f u) {
@@ -206,6 +208,10 @@ std::optional<BsdfSample> sample_bsdf(const Bsdf& bsdf, float u_lobe, Vec2f u) {
       return sample_clear_glass(bsdf, u_side);
     }
     wi = sample_rough_glass(bsdf, u_side, u);
+  }
+  const bool from_glass = u_lobe >= after_coat;
+  if (wi.z <= 0.0F && !from_glass) {
+    return std::nullopt;
   }
   // 2. Weigh it by all lobes that could have drawn it.
   const BsdfValue value = eval_bsdf_with_pdf(bsdf, wi);

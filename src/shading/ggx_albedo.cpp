@@ -14,7 +14,7 @@ constexpr int kCosines = 32;
 constexpr int kRoughnesses = 32;
 constexpr int kGlassCosines = 16;
 constexpr int kGlassRoughnesses = 12;
-constexpr int kGlassEtas = 16;
+constexpr int kGlassEtas = 24;
 // The glass table's axis is (eta - 1) / (eta + 1): eta from 1/3 to 3; an even count leaves eta = 1 out.
 constexpr float kGlassEtaRange = 0.5F;
 

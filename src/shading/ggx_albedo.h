@@ -2,7 +2,7 @@
 // What       directional albedos of single-scattering lobes, for energy compensation and lobe selection
 // Guarantee  within 0.01 of numerical integration (tests/shading/furnace_test.cpp)
 // Cost       a bilinear lookup; the reflection table is built at its first use in about 8 ms, the glass
-//            table, which rough glass alone needs, in about 30 ms; both are constant afterwards
+//            table, which rough glass alone needs, in about 40 ms; both are constant afterwards
 // Source     the split into scale and bias: B. Karis, "Real Shading in Unreal Engine 4" (2013)
 #pragma once
 
