@@ -10,6 +10,6 @@ cmake --build --preset release --target arris_program
 mkdir -p out
 arris=build/release/arris
 start=$SECONDS
-"$arris" render examples/models/desk_organiser.obj -o out/desk_organiser.png
-"$arris" render examples/models/desk_organiser.obj --round none -o out/desk_organiser_sharp.png
-echo "demo.sh: rendered out/desk_organiser.png and out/desk_organiser_sharp.png in $((SECONDS - start)) s"
+"$arris" render examples/models/keypad.obj -o out/keypad.png
+"$arris" render examples/models/keypad.obj --round none -o out/keypad_sharp.png
+echo "demo.sh: rendered out/keypad.png and out/keypad_sharp.png in $((SECONDS - start)) s"

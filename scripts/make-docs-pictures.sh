@@ -1,0 +1,24 @@
+#!/usr/bin/env bash
+# make-docs-pictures.sh — renders the pictures of README.md and docs/ into docs/pictures/.
+# Environment  ARRIS_SPP   samples per pixel, 256 by default
+set -euo pipefail
+cd "$(dirname "$0")/.."
+
+cmake --preset release
+cmake --build --preset release --target arris_program
+arris=build/release/arris
+pictures=docs/pictures
+spp=${ARRIS_SPP:-256}
+mkdir -p "$pictures"
+
+render() { # INPUT PICTURE [OPTION…]
+  "$arris" render "$1" -o "$pictures/$2" --spp "$spp" --quiet "${@:3}"
+  echo "$pictures/$2"
+}
+
+render examples/models/keypad.obj keypad.jpg --size 1280x720
+render examples/models/keypad.obj keypad_sharp.jpg --size 1280x720 --round none
+render examples/models/dice.stl dice.jpg --size 960x540
+render examples/models/arch.obj arch.jpg --size 960x540 --lighting sky
+render examples/scenes/bevel_shader.toml bevel_shader.jpg
+render examples/scenes/cornell_box.toml cornell_box.jpg
