@@ -1,0 +1,224 @@
+#include "edges/welded_mesh.h"
+
+#include <algorithm>
+#include <bit>
+#include <limits>
+
+#include "arris/error.h"
+
+namespace arris {
+namespace {
+
+void check_mesh(const MeshView& mesh, const std::string& name) {
+  for (std::size_t i = 0; i < mesh.positions.size(); ++i) {
+    if (!is_finite(mesh.positions[i])) {
+      throw Error(Error::Kind::input, name,
+                  "vertex " + std::to_string(i) + " has a coordinate that is not a finite number");
+    }
+  }
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+    for (const std::uint32_t i : mesh.triangles[t]) {
+      if (i >= mesh.positions.size()) {
+        throw Error(Error::Kind::input, name,
+                    "triangle " + std::to_string(t) + " uses vertex " + std::to_string(i) +
+                        ", but there are only " + std::to_string(mesh.positions.size()));
+      }
+    }
+  }
+  if (mesh.triangles.size() > kLastHalfEdge / 3) {
+    throw Error(Error::Kind::input, name,
+                "has " + std::to_string(mesh.triangles.size()) + " triangles; at most " +
+                    std::to_string(kLastHalfEdge / 3) + " can be rounded in one mesh");
+  }
+}
+
+std::uint32_t hash_position(Vec3f p) {
+  // Adding zero turns -0 into +0, so that both weld.
+  const auto bits = [](float f) { return std::bit_cast<std::uint32_t>(f + 0.0F); };
+  std::uint64_t h = bits(p.x) * 0x9E3779B97F4A7C15ULL;
+  h = (h ^ (h >> 32) ^ bits(p.y)) * 0xC2B2AE3D27D4EB4FULL;
+  h = (h ^ (h >> 29) ^ bits(p.z)) * 0x9E3779B97F4A7C15ULL;
+  return std::uint32_t(h >> 32);
+}
+
+// Welded vertex of each position; fills `vertices`.
+std::vector<std::uint32_t> weld_positions(std::span<const Vec3f> positions,
+                                          std::vector<Vec3f>& vertices) {
+  const std::size_t slots = std::bit_ceil(std::max<std::size_t>(16, positions.size() * 2));
+  std::vector<std::uint32_t> table(slots, kNone);
+  std::vector<std::uint32_t> vertex_of(positions.size());
+  vertices.reserve(positions.size());
+  for (std::size_t i = 0; i < positions.size(); ++i) {
+    std::size_t slot = hash_position(positions[i]) & (slots - 1);
+    while (table[slot] != kNone && vertices[table[slot]] != positions[i]) {
+      slot = (slot + 1) & (slots - 1);
+    }
+    if (table[slot] == kNone) {
+      table[slot] = std::uint32_t(vertices.size());
+      vertices.push_back(positions[i]);
+    }
+    vertex_of[i] = table[slot];
+  }
+  return vertex_of;
+}
+
+bool is_degenerate(const Triangle& t) {
+  return t[0] == t[1] || t[1] == t[2] || t[2] == t[0];
+}
+
+// Unit vector from the edge into the triangle of half-edge h, perpendicular to the edge.
+Vec3d direction_into_face(const WeldedMesh& mesh, std::uint32_t h, Vec3d edge) {
+  const Vec3d a(mesh.vertices[mesh.origin(h)]);
+  const Vec3d c(mesh.vertices[mesh.origin(WeldedMesh::previous(h))]);
+  const Vec3d d = c - a;
+  return normalize(d - edge * dot(d, edge));
+}
+
+// Pairs the half-edges of one edge where k solids touch (k along it, k against it): going around the edge
+// from a face through its own material, the first face of the other direction closes the wedge.
+void pair_around_edge(WeldedMesh& mesh, std::span<const std::uint32_t> half_edges) {
+  const std::uint32_t first = half_edges[0];
+  const Vec3d edge = normalize(Vec3d(mesh.vertices[mesh.target(first)]) -
+                               Vec3d(mesh.vertices[mesh.origin(first)]));
+  const Vec3d axis_x = direction_into_face(mesh, first, edge);
+  const Vec3d axis_y = cross(edge, axis_x);
+  struct Spoke {
+    double angle;
+    bool along;
+    std::uint32_t half_edge;
+  };
+  std::vector<Spoke> spokes;
+  std::size_t along_count = 0;
+  for (const std::uint32_t h : half_edges) {
+    const Vec3d d = direction_into_face(mesh, h, edge);
+    const bool along = mesh.origin(h) == mesh.origin(first);
+    along_count += along ? 1 : 0;
+    spokes.push_back({std::atan2(dot(d, axis_y), dot(d, axis_x)), along, h});
+  }
+  if (along_count * 2 != half_edges.size()) {
+    for (const std::uint32_t h : half_edges) mesh.twin[h] = kNonManifold;
+    return;
+  }
+  // A face whose half-edge runs along the edge has its outward normal towards larger angles (edge × d) and
+  // its material towards smaller ones: its partner is the next face of the other direction below it. Faces of
+  // two solids that share a plane lie at one angle; they are a full turn apart, not a wedge of no thickness.
+  constexpr double kSameAngle = 1e-5;
+  std::vector<bool> used(spokes.size(), false);
+  for (const Spoke& spoke : spokes) {
+    if (!spoke.along) continue;
+    std::size_t partner = spokes.size();
+    double smallest_wedge = std::numeric_limits<double>::infinity();
+    for (std::size_t j = 0; j < spokes.size(); ++j) {
+      if (spokes[j].along || used[j]) continue;
+      double wedge = spoke.angle - spokes[j].angle;
+      while (wedge < kSameAngle) wedge += 2 * kPi;
+      if (wedge < smallest_wedge) {
+        smallest_wedge = wedge;
+        partner = j;
+      }
+    }
+    used[partner] = true;
+    mesh.twin[spoke.half_edge] = spokes[partner].half_edge;
+    mesh.twin[spokes[partner].half_edge] = spoke.half_edge;
+  }
+}
+
+void find_twins(WeldedMesh& mesh) {
+  const auto half_edge_count = std::uint32_t(mesh.triangles.size() * 3);
+  mesh.twin.assign(half_edge_count, kBoundary);
+  // Half-edges by their smaller vertex (counting sort), then by the other one.
+  std::vector<std::uint32_t> begin(mesh.vertices.size() + 2, 0);
+  const auto low = [&](std::uint32_t h) { return std::min(mesh.origin(h), mesh.target(h)); };
+  const auto high = [&](std::uint32_t h) { return std::max(mesh.origin(h), mesh.target(h)); };
+  for (std::uint32_t h = 0; h < half_edge_count; ++h) {
+    if (!is_degenerate(mesh.triangles[h / 3])) ++begin[low(h) + 2];
+  }
+  for (std::size_t v = 2; v < begin.size(); ++v) begin[v] += begin[v - 1];
+  struct Entry {
+    std::uint32_t high, half_edge;
+  };
+  std::vector<Entry> entries(begin.back());
+  for (std::uint32_t h = 0; h < half_edge_count; ++h) {
+    if (!is_degenerate(mesh.triangles[h / 3])) entries[begin[low(h) + 1]++] = {high(h), h};
+  }
+  std::vector<std::uint32_t> group;
+  for (std::size_t v = 0; v + 1 < begin.size(); ++v) {
+    const auto first = entries.begin() + begin[v];
+    const auto last = entries.begin() + begin[v + 1];
+    std::sort(first, last, [](const Entry& a, const Entry& b) {
+      return a.high != b.high ? a.high < b.high : a.half_edge < b.half_edge;
+    });
+    for (auto i = first; i != last;) {
+      auto j = i;
+      while (j != last && j->high == i->high) ++j;
+      if (j - i == 2) {
+        const bool opposite = mesh.origin(i[0].half_edge) != mesh.origin(i[1].half_edge);
+        mesh.twin[i[0].half_edge] = opposite ? i[1].half_edge : kNonManifold;
+        mesh.twin[i[1].half_edge] = opposite ? i[0].half_edge : kNonManifold;
+      } else if (j - i > 2) {
+        group.clear();
+        for (auto k = i; k != j; ++k) group.push_back(k->half_edge);
+        pair_around_edge(mesh, group);
+      }
+      i = j;
+    }
+  }
+}
+
+void collect_shell(WeldedMesh& mesh, std::uint32_t seed) {
+  const auto index = std::uint32_t(mesh.shells.size());
+  Shell shell;
+  constexpr double inf = std::numeric_limits<double>::infinity();
+  shell.bounds_min = Vec3d(inf);
+  shell.bounds_max = Vec3d(-inf);
+  shell.first_triangle = std::uint32_t(mesh.triangles_by_shell.size());
+  mesh.shell[seed] = index;
+  mesh.triangles_by_shell.push_back(seed);
+  for (std::size_t i = shell.first_triangle; i < mesh.triangles_by_shell.size(); ++i) {
+    const std::uint32_t t = mesh.triangles_by_shell[i];
+    for (std::uint32_t k = 0; k < 3; ++k) {
+      const Vec3d p(mesh.vertices[mesh.triangles[t][k]]);
+      shell.bounds_min = min(shell.bounds_min, p);
+      shell.bounds_max = max(shell.bounds_max, p);
+      const std::uint32_t twin = mesh.twin[3 * t + k];
+      if (twin > kLastHalfEdge) {
+        shell.closed = false;
+      } else if (mesh.shell[twin / 3] == kNone) {
+        mesh.shell[twin / 3] = index;
+        mesh.triangles_by_shell.push_back(twin / 3);
+      }
+    }
+  }
+  shell.triangle_count = std::uint32_t(mesh.triangles_by_shell.size()) - shell.first_triangle;
+  const Vec3d center = shell.center();
+  for (std::uint32_t i = 0; i < shell.triangle_count; ++i) {
+    const Triangle& t = mesh.triangles[mesh.triangles_by_shell[shell.first_triangle + i]];
+    const Vec3d a = Vec3d(mesh.vertices[t[0]]) - center;
+    const Vec3d b = Vec3d(mesh.vertices[t[1]]) - center;
+    const Vec3d c = Vec3d(mesh.vertices[t[2]]) - center;
+    shell.volume += dot(a, cross(b, c)) / 6;
+  }
+  mesh.shells.push_back(shell);
+}
+
+}  // namespace
+
+WeldedMesh make_welded_mesh(const MeshView& mesh, const std::string& name) {
+  check_mesh(mesh, name);
+  WeldedMesh welded;
+  const std::vector<std::uint32_t> vertex_of = weld_positions(mesh.positions, welded.vertices);
+  welded.triangles.reserve(mesh.triangles.size());
+  for (const Triangle& t : mesh.triangles) {
+    welded.triangles.push_back({vertex_of[t[0]], vertex_of[t[1]], vertex_of[t[2]]});
+    welded.degenerate_triangles += is_degenerate(welded.triangles.back()) ? 1 : 0;
+  }
+  find_twins(welded);
+  welded.shell.assign(mesh.triangles.size(), kNone);
+  welded.triangles_by_shell.reserve(mesh.triangles.size());
+  for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
+    if (welded.shell[t] == kNone && !is_degenerate(welded.triangles[t])) collect_shell(welded, t);
+  }
+  return welded;
+}
+
+}  // namespace arris

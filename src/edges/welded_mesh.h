@@ -1,0 +1,59 @@
+// welded_mesh.h — triangles joined into shells
+// What       vertices at the same place become one, triangles find their neighbours across edges, and
+//            connected triangles become shells. Where more than two triangles meet at an edge (pieces
+//            that touch), they are paired around the edge so that each pair encloses material.
+// In / Out   triangle indices stay the caller's; half-edge h = 3 * triangle + k runs from corner k to
+//            corner k+1 of `triangles` (which are turned around where a shell is inside out)
+// Guarantee  twin[twin[h]] == h; tests/edges/welded_mesh_test.cpp
+// Limits     T-junctions stay boundaries
+// Errors     Error{input}: index out of range, position not finite
+// Cost       linear, but for sorting the triangles around a vertex
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "arris/math.h"
+#include "arris/rounding.h"
+
+namespace arris {
+
+inline constexpr std::uint32_t kNone = 0xffffffffU;
+// Values of twin[] that are no half-edge.
+inline constexpr std::uint32_t kBoundary = kNone;
+inline constexpr std::uint32_t kNonManifold = kNone - 1;
+inline constexpr std::uint32_t kLastHalfEdge = kNone - 2;
+
+struct Shell {
+  Vec3d bounds_min, bounds_max;
+  double volume = 0;  // signed, before turning around; about the bounds' centre if open
+  bool closed = true;
+  bool turned = false;  // the triangles' order was reversed: their normals pointed inwards
+  std::uint32_t first_triangle = 0;  // into triangles_by_shell
+  std::uint32_t triangle_count = 0;
+
+  [[nodiscard]] Vec3d center() const { return (bounds_min + bounds_max) * 0.5; }
+  [[nodiscard]] double size() const { return length(bounds_max - bounds_min); }
+};
+
+struct WeldedMesh {
+  std::vector<Vec3f> vertices;
+  std::vector<Triangle> triangles;
+  std::vector<std::uint32_t> twin;   // per half-edge
+  std::vector<std::uint32_t> shell;  // per triangle; kNone where two corners coincide
+  std::vector<Shell> shells;
+  std::vector<std::uint32_t> triangles_by_shell;  // triangle indices, shell after shell
+  std::uint64_t degenerate_triangles = 0;         // with two corners in one place
+
+  [[nodiscard]] std::uint32_t origin(std::uint32_t h) const { return triangles[h / 3][h % 3]; }
+  [[nodiscard]] static std::uint32_t next(std::uint32_t h) { return h % 3 == 2 ? h - 2 : h + 1; }
+  [[nodiscard]] static std::uint32_t previous(std::uint32_t h) {
+    return h % 3 == 0 ? h + 2 : h - 1;
+  }
+  [[nodiscard]] std::uint32_t target(std::uint32_t h) const { return origin(next(h)); }
+};
+
+WeldedMesh make_welded_mesh(const MeshView& mesh, const std::string& name);
+
+}  // namespace arris

@@ -1,0 +1,93 @@
+// crease_network.h — arcs and nodes of one shell
+// What       Chains of rounded edges become arcs, their ends nodes (see corner.h). For a closed convex shell
+//            whose arcs all have positive length this is the edge graph of the erosion E; where arcs turn
+//            over, the radius has eaten features and the caller makes E by half-space intersection
+//            (eroded_polyhedron.h). On other shells such edges are left sharp and counted.
+// In / Out   coordinates relative to the shell's centre
+// Cost       linear in the shell's triangles
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <vector>
+
+#include "edges/flat_regions.h"
+#include "edges/welded_mesh.h"
+#include "rounding/rounding_data.h"
+
+namespace arris {
+
+// An arc with the ends of its chain of mesh edges, from which its bands take their extent.
+struct NetworkArc {
+  Arc arc;
+  Vec3d v0, v1;
+};
+
+struct NetworkNode {
+  Vec3d position;
+  Node::Kind kind = Node::Kind::sphere;
+  std::uint32_t wall = kNone;  // face in which a cap lies
+};
+
+// Indices of arcs and nodes count from 0 within the shell; faces are regions of the mesh.
+struct ShellNetwork {
+  std::vector<NetworkArc> arcs;
+  std::vector<NetworkNode> nodes;
+  std::uint64_t rounded_edges = 0;    // chains of mesh edges
+  std::uint64_t rounded_corners = 0;  // mesh corners that got spheres
+  std::uint64_t shortened_edges = 0;  // left sharp: the radius needs more length than they have
+  bool inverted = false;              // some arc has negative length
+  // The largest radius at which no arc has vanished yet, from the lengths of the arcs.
+  double radius_limit = std::numeric_limits<double>::infinity();
+};
+
+class NetworkBuilder {
+ public:
+  // kinds: of every half-edge of the mesh.
+  NetworkBuilder(const WeldedMesh& mesh, const FlatRegions& regions, std::vector<EdgeKind>& kinds,
+                 double radius);
+
+  // convex: no concave edge anywhere in the shell. Then edges are never left sharp.
+  ShellNetwork build(std::uint32_t shell, bool convex);
+
+ private:
+  struct End {
+    std::uint32_t node;
+    Vec3d point;  // end of the arc's axis
+  };
+  struct RingEdge {
+    std::uint32_t half_edge;                // outgoing
+    std::uint32_t face_before, face_after;  // counter-clockwise
+    bool rounded;
+  };
+
+  ShellNetwork build_once(std::uint32_t shell, bool convex, std::vector<std::uint32_t>& inverted);
+  void collect_ring(std::uint32_t half_edge);
+  void make_corner();
+  void make_cap(const RingEdge& edge);
+  bool make_mitre(const RingEdge& a, const RingEdge& b);
+  void make_spheres();
+  void split_spheres(std::uint32_t i, std::uint32_t j, std::uint32_t node, Vec3d travel);
+  void link_edge_to(std::uint32_t ring_edge, std::uint32_t node);
+  bool make_arc(std::uint32_t half_edge);
+  std::uint32_t add_node(const NetworkNode& node);
+  std::uint32_t set_end(std::uint32_t half_edge, const End& end);
+  [[nodiscard]] Vec3d local(std::uint32_t vertex) const;
+  [[nodiscard]] Vec3d axis_point(std::uint32_t face_a, std::uint32_t face_b, Vec3d near) const;
+  [[nodiscard]] Vec3d outgoing_direction(const RingEdge& edge) const;
+
+  const WeldedMesh& mesh_;
+  const FlatRegions& regions_;
+  std::vector<EdgeKind>& kinds_;
+  double radius_;
+  std::vector<std::uint32_t> end_of_;  // per half-edge: index into ends_, or a mark
+  std::vector<End> ends_;
+  std::vector<RingEdge> ring_;
+  bool ring_open_ = false;
+  bool ring_irregular_ = false;
+  Vec3d center_;
+  double size_ = 0;
+  ShellNetwork out_;
+};
+
+}  // namespace arris

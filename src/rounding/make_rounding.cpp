@@ -1,0 +1,326 @@
+// make_rounding.cpp — from triangles to a Rounding: weld, find faces, build each shell's network, its bands
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <string>
+
+#include "arris/error.h"
+#include "edges/inscribed_ball.h"
+#include "rounding/bands.h"
+#include "rounding/crease_network.h"
+#include "rounding/eroded_polyhedron.h"
+#include "rounding/rounding_data.h"
+
+namespace arris {
+namespace {
+
+std::string format_length(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.6g", value);
+  return text;
+}
+
+class RoundingMaker {
+ public:
+  RoundingMaker(const MeshView& mesh, const RoundingOptions& options, const std::string& name)
+      : mesh_(mesh), options_(options), name_(name), data_(std::make_unique<Rounding::Data>()) {}
+
+  std::unique_ptr<const Rounding::Data> make() {
+    check_options();
+    data_->radius = options_.radius;
+    welded_ = make_welded_mesh(mesh_, name_);
+    regions_ = make_flat_regions(welded_);
+    if (!turn_inverted_shells(welded_, regions_, options_.min_angle).empty()) {
+      regions_ = make_flat_regions(welded_);
+    }
+    classify_edges();
+    sort_triangles_by_region();
+    make_solids();
+    NetworkBuilder builder(welded_, regions_, kinds_, options_.radius);
+    for (std::uint32_t s = 0; s < data_->solids.size(); ++s) round_solid(builder, s);
+    sort_bands();
+    fill_links();
+    if (options_.detection == Detection::kd_tree) make_tree();
+    finish_report();
+    return std::move(data_);
+  }
+
+ private:
+  void check_options() const {
+    if (!(options_.radius > 0) || !std::isfinite(options_.radius)) {
+      throw Error(Error::Kind::input, name_,
+                  "rounding radius " + format_length(options_.radius) +
+                      " is not a positive number; use one above 0, or no rounding");
+    }
+    if (!(options_.min_angle >= 0 && options_.min_angle <= kPi)) {
+      throw Error(Error::Kind::input, name_,
+                  "minimum angle " + format_length(degrees(options_.min_angle)) +
+                      " degrees is outside 0 to 180");
+    }
+  }
+
+  void classify_edges() {
+    const auto count = std::uint32_t(welded_.twin.size());
+    kinds_.assign(count, EdgeKind::flat);
+    RoundingReport& report = data_->report;
+    for (std::uint32_t h = 0; h < count; ++h) {
+      if (welded_.shell[h / 3] == kNone) continue;
+      const std::uint32_t twin = welded_.twin[h];
+      if (twin <= kLastHalfEdge && twin < h) continue;
+      const EdgeKind kind = classify_edge(welded_, regions_, h, options_.min_angle);
+      kinds_[h] = kind;
+      if (twin <= kLastHalfEdge) kinds_[twin] = kind;
+      report.concave_edges += kind == EdgeKind::concave ? 1 : 0;
+      report.smooth_edges += kind == EdgeKind::smooth ? 1 : 0;
+      report.boundary_edges += kind == EdgeKind::boundary ? 1 : 0;
+      report.nonmanifold_edges += kind == EdgeKind::nonmanifold ? 1 : 0;
+    }
+    if (options_.edges == RoundEdges::convex || options_.edges == RoundEdges::both) return;
+    // Concave edges alone: nothing that this kernel rounds.
+    for (EdgeKind& kind : kinds_) {
+      if (kind == EdgeKind::convex) kind = EdgeKind::smooth;
+    }
+  }
+
+  void sort_triangles_by_region() {
+    triangle_begin_.assign(regions_.planes.size() + 2, 0);
+    for (const std::uint32_t r : regions_.region) {
+      if (r != kNone) ++triangle_begin_[r + 2];
+    }
+    for (std::size_t r = 2; r < triangle_begin_.size(); ++r) {
+      triangle_begin_[r] += triangle_begin_[r - 1];
+    }
+    triangles_.resize(triangle_begin_.back());
+    for (std::uint32_t t = 0; t < regions_.region.size(); ++t) {
+      const std::uint32_t r = regions_.region[t];
+      if (r != kNone) triangles_[triangle_begin_[r + 1]++] = t;
+    }
+  }
+
+  void make_solids() {
+    data_->face = std::move(regions_.region);
+    data_->faces.reserve(regions_.planes.size());
+    for (std::size_t r = 0; r < regions_.planes.size(); ++r) {
+      data_->faces.push_back({regions_.planes[r].normal, regions_.planes[r].d, regions_.shell[r]});
+    }
+    regions_.region = data_->face;
+    data_->solids.resize(welded_.shells.size());
+    for (std::size_t s = 0; s < welded_.shells.size(); ++s) {
+      Solid& solid = data_->solids[s];
+      solid.center = welded_.shells[s].center();
+      solid.size = welded_.shells[s].size();
+      solid.closed = welded_.shells[s].closed;
+    }
+    for (std::uint32_t f = 0; f < data_->faces.size(); ++f) {
+      Solid& solid = data_->solids[data_->faces[f].solid];
+      if (solid.face_count++ == 0) solid.first_face = f;
+    }
+  }
+
+  // Looks at every edge of the shell: is it convex, is every edge rounded?
+  void judge_shape(std::uint32_t shell_index) {
+    const Shell& shell = welded_.shells[shell_index];
+    Solid& solid = data_->solids[shell_index];
+    bool all_rounded = true;
+    bool convex = true;
+    for (std::uint32_t i = 0; i < shell.triangle_count; ++i) {
+      const std::uint32_t t = welded_.triangles_by_shell[shell.first_triangle + i];
+      for (std::uint32_t h = 3 * t; h < 3 * t + 3; ++h) {
+        all_rounded = all_rounded && (kinds_[h] == EdgeKind::convex || kinds_[h] == EdgeKind::flat);
+        if (kinds_[h] == EdgeKind::concave) convex = false;
+        if (kinds_[h] == EdgeKind::smooth && welded_.twin[h] > h) {
+          convex = convex && turn_at(welded_, regions_, h) >= 0;
+        }
+      }
+    }
+    solid.convex = convex;
+    solid.exact = convex && solid.closed && all_rounded;
+  }
+
+  void round_solid(NetworkBuilder& builder, std::uint32_t s) {
+    Solid& solid = data_->solids[s];
+    judge_shape(s);
+    solid.first_arc = std::uint32_t(data_->arcs.size());
+    solid.first_node = std::uint32_t(data_->nodes.size());
+    if (is_cavity(welded_.shells[s])) {
+      ++cavities_;
+      return;
+    }
+    const bool convex_solid = solid.convex && solid.closed;
+    ShellNetwork network = builder.build(s, convex_solid);
+    if (convex_solid && network.inverted) network = erode(s);
+    data_->report.rounded_edges += network.rounded_edges;
+    data_->report.rounded_corners += network.rounded_corners;
+    shortened_ += network.shortened_edges;
+    const BandInput input{mesh_, welded_, regions_, triangle_begin_, triangles_, options_.radius};
+    append_bands(input, network, solid, solid.first_arc, bands_);
+    append(network, solid);
+  }
+
+  // The radius has eaten features: E has fewer edges than P.
+  ShellNetwork erode(std::uint32_t s) {
+    Solid& solid = data_->solids[s];
+    const std::span<const Plane> planes(regions_.planes.data() + solid.first_face,
+                                        solid.face_count);
+    const InscribedBall ball = largest_inscribed_ball(planes, solid.size);
+    if (ball.radius - options_.radius < 1e-6 * solid.size) {
+      throw Error(Error::Kind::input, name_,
+                  "rounding radius " + format_length(options_.radius) +
+                      " is not below the inradius " + format_length(ball.radius) +
+                      " of the solid at (" + format_length(solid.center.x) + ", " +
+                      format_length(solid.center.y) + ", " + format_length(solid.center.z) +
+                      "); use at most " + format_length(0.99 * ball.radius));
+    }
+    solid.rewired = true;
+    return make_eroded_polyhedron(planes, smooth_groups(solid), solid.first_face, options_.radius,
+                                  ball.center, solid.size);
+  }
+
+  // Faces joined by edges that stay sharp.
+  std::vector<std::uint32_t> smooth_groups(const Solid& solid) {
+    std::vector<std::uint32_t> group(solid.face_count);
+    std::iota(group.begin(), group.end(), 0U);
+    const auto root = [&](std::uint32_t f) {
+      while (group[f] != f) f = group[f] = group[group[f]];
+      return f;
+    };
+    for (std::uint32_t i = triangle_begin_[solid.first_face];
+         i < triangle_begin_[solid.first_face + solid.face_count]; ++i) {
+      const std::uint32_t t = triangles_[i];
+      for (std::uint32_t h = 3 * t; h < 3 * t + 3; ++h) {
+        if (kinds_[h] != EdgeKind::smooth) continue;
+        const std::uint32_t a = root(data_->face[t] - solid.first_face);
+        const std::uint32_t b = root(data_->face[welded_.twin[h] / 3] - solid.first_face);
+        group[std::max(a, b)] = std::min(a, b);
+      }
+    }
+    for (std::uint32_t f = 0; f < group.size(); ++f) group[f] = root(f);
+    return group;
+  }
+
+  void append(const ShellNetwork& network, Solid& solid) {
+    solid.arc_count = std::uint32_t(network.arcs.size());
+    solid.node_count = std::uint32_t(network.nodes.size());
+    for (const NetworkArc& source : network.arcs) {
+      Arc arc = source.arc;
+      arc.node0 += solid.first_node;
+      if (!arc.is_stub()) arc.node1 += solid.first_node;
+      data_->arcs.push_back(arc);
+      edge_ends_.push_back({source.v0, source.v1});
+    }
+    for (const NetworkNode& source : network.nodes) {
+      Node node;
+      node.position = Vec3f(source.position);
+      node.kind = source.kind;
+      data_->nodes.push_back(node);
+      walls_.push_back(source.wall);
+    }
+  }
+
+  // Bands in the order of their triangles.
+  void sort_bands() {
+    std::vector<std::uint32_t>& begin = data_->band_begin;
+    begin.assign(mesh_.triangles.size() + 2, 0);
+    for (const TriangleBand& b : bands_) ++begin[b.triangle + 2];
+    for (std::size_t t = 2; t < begin.size(); ++t) begin[t] += begin[t - 1];
+    data_->bands.resize(bands_.size());
+    for (const TriangleBand& b : bands_) data_->bands[begin[b.triangle + 1]++] = b.band;
+    begin.pop_back();
+  }
+
+  void fill_links() {
+    std::vector<Node>& nodes = data_->nodes;
+    const auto for_ends = [&](auto&& visit) {
+      for (std::uint32_t a = 0; a < data_->arcs.size(); ++a) {
+        visit(data_->arcs[a].node0, a);
+        if (!data_->arcs[a].is_stub()) visit(data_->arcs[a].node1, a);
+      }
+    };
+    std::vector<std::uint32_t> count(nodes.size(), 0);
+    for_ends([&](std::uint32_t node, std::uint32_t) { ++count[node]; });
+    std::uint32_t total = 0;
+    for (std::size_t n = 0; n < nodes.size(); ++n) {
+      nodes[n].first_link = total;
+      total += count[n] + (nodes[n].kind == Node::Kind::cap ? 1U : 0U);
+    }
+    data_->links.assign(total, kNone);
+    for_ends([&](std::uint32_t node, std::uint32_t arc) {
+      data_->links[nodes[node].first_link + nodes[node].link_count++] = arc;
+    });
+    for (std::size_t n = 0; n < nodes.size(); ++n) {
+      if (nodes[n].kind != Node::Kind::cap) continue;
+      data_->links[nodes[n].first_link + nodes[n].link_count++] = walls_[n];
+    }
+  }
+
+  void make_tree() {
+    std::vector<std::vector<DetectionCylinder>> cylinders(data_->solids.size());
+    for (std::size_t s = 0; s < data_->solids.size(); ++s) {
+      const Solid& solid = data_->solids[s];
+      for (std::uint32_t a = solid.first_arc; a < solid.first_arc + solid.arc_count; ++a) {
+        const Arc& arc = data_->arcs[a];
+        const auto [v0, v1] = edge_ends_[a];
+        if (arc.is_stub() || v0 == v1) continue;
+        // H = −(N_a + N_b)/|…| and d = r / sin α, α half the interior dihedral angle (paper §3).
+        const Vec3d sum = data_->faces[arc.face_a].normal + data_->faces[arc.face_b].normal;
+        const double sin_alpha = length(sum) / 2;
+        const Vec3d to_axis = -normalize(sum) * (options_.radius / sin_alpha);
+        cylinders[s].push_back({Vec3f(v0 + to_axis * 0.5), Vec3f(v1 + to_axis * 0.5),
+                                float(length(to_axis) * 0.5), a});
+      }
+    }
+    data_->tree = std::make_unique<const DetectionTree>(cylinders);
+  }
+
+  void finish_report() {
+    RoundingReport& report = data_->report;
+    report.solids = data_->solids.size();
+    std::uint64_t open = 0, other = 0;
+    for (const Solid& solid : data_->solids) {
+      report.convex_solids += solid.convex && solid.closed ? 1 : 0;
+      report.exact_solids += solid.exact ? 1 : 0;
+      open += solid.closed ? 0 : 1;
+      other += solid.closed && !solid.convex ? 1 : 0;
+    }
+    report.open_solids = open;
+    report.bytes = bytes();
+    const auto note = [&](std::uint64_t count, const char* text) {
+      if (count > 0) report.notes.push_back(std::to_string(count) + " " + text);
+    };
+    note(other - cavities_, "solids are not convex: rounded locally along their convex edges");
+    note(open, "shells are not closed: rounded where they are locally a solid");
+    note(cavities_, "hollows inside other solids: their edges stay sharp");
+    note(report.concave_edges, "concave edges stay sharp");
+    note(report.nonmanifold_edges, "non-manifold edges stay sharp");
+    note(shortened_, "edges stay sharp: the radius needs more length than they have");
+  }
+
+  [[nodiscard]] std::uint64_t bytes() const {
+    const auto of = [](const auto& v) { return v.size() * sizeof(v[0]); };
+    return of(data_->band_begin) + of(data_->bands) + of(data_->face) + of(data_->faces) +
+           of(data_->arcs) + of(data_->nodes) + of(data_->links) + of(data_->solids) +
+           (data_->tree ? data_->tree->bytes() : 0);
+  }
+
+  const MeshView& mesh_;
+  const RoundingOptions& options_;
+  const std::string& name_;
+  std::unique_ptr<Rounding::Data> data_;
+  WeldedMesh welded_;
+  FlatRegions regions_;
+  std::vector<EdgeKind> kinds_;
+  std::vector<std::uint32_t> triangle_begin_, triangles_;
+  std::vector<TriangleBand> bands_;
+  std::vector<std::uint32_t> walls_;
+  std::vector<std::pair<Vec3d, Vec3d>> edge_ends_;  // per arc
+  std::uint64_t cavities_ = 0, shortened_ = 0;
+};
+
+}  // namespace
+
+Rounding make_rounding(const MeshView& mesh, const RoundingOptions& options,
+                       const std::string& name) {
+  return Rounding(RoundingMaker(mesh, options, name).make());
+}
+
+}  // namespace arris

@@ -1,0 +1,176 @@
+// resolve.cpp — what becomes of a hit on the mesh
+// Source     Courtin et al. §4; the design's ray logic: a hit in the void is walked on to the rounded surface, or
+//            passes. A hit from inside is the mirror image: walked back from where the ray leaves P.
+#include <cmath>
+
+#include "rounding/rounding_data.h"
+#include "rounding/walk.h"
+
+namespace arris {
+namespace {
+
+// Relative to the solid's size: a point of the void this near to the surface counts as on it.
+constexpr double kOnSurface = 1e-7;
+// Below this cosine between ray and face, the hit's own t is better than the intersection with the plane.
+constexpr double kGrazing = 1e-3;
+constexpr std::size_t kMaxDetected = 16;
+
+struct FaceHit {
+  std::uint32_t face;
+  Vec3d direction;  // unit
+  double scale;     // length of the ray's direction
+  double t;         // refined
+  Vec3d x;          // relative to the solid's centre
+};
+
+FaceHit locate(const Rounding::Data& data, const Ray& ray, const MeshHit& hit) {
+  FaceHit at{};
+  at.face = data.face[hit.triangle];
+  const Face& face = data.faces[at.face];
+  const Vec3d origin = ray.origin - data.solids[face.solid].center;
+  at.scale = length(ray.direction);
+  at.direction = ray.direction / at.scale;
+  const double cosine = dot(face.normal, at.direction);
+  at.t = hit.t;
+  if (std::abs(cosine) > kGrazing) {
+    at.t = (face.d - dot(face.normal, origin)) / (cosine * at.scale);
+  }
+  at.x = origin + ray.direction * at.t;
+  return at;
+}
+
+// Solids that aren't exact: bands may reach beyond the void. x is in it if it lies under the arc's faces and
+// farther than r from the place.
+bool is_in_void(const Rounding::Data& data, const Solid& solid, std::uint32_t arc_index,
+                Place place, Vec3d x) {
+  const double slack = kOnSurface * solid.size;
+  if (distance_to_place(data, place, x) <= data.radius + slack) return false;
+  const Arc& arc = data.arcs[place.is_node ? arc_index : place.index];
+  for (const std::uint32_t f : {arc.face_a, arc.face_b}) {
+    const double above = dot(data.faces[f].normal, x) - data.faces[f].d;
+    if (above > 10 * slack) return false;
+    if (!place.is_node && above < -data.radius - slack) return false;
+  }
+  return true;
+}
+
+// The place from which the walk starts, or nothing if the hit is kept.
+std::optional<Place> place_of(const Rounding::Data& data, const Solid& solid, std::uint32_t arc,
+                              Vec3d x) {
+  if (solid.rewired) return search_place(data, solid, x);
+  const std::optional<Place> place = find_place(data, solid, arc, x);
+  if (place && !solid.exact && !is_in_void(data, solid, arc, *place, x)) return std::nullopt;
+  return place;
+}
+
+std::optional<Place> detect_by_bands(const Rounding::Data& data, const Solid& solid,
+                                     const MeshHit& hit, Vec3d x) {
+  const auto u = float(hit.u);
+  const auto v = float(hit.v);
+  const Band* const last = data.bands.data() + data.band_begin[hit.triangle + 1];
+  const Band* deepest = nullptr;
+  float depth = 0;
+  for (const Band* b = data.bands.data() + data.band_begin[hit.triangle]; b != last; ++b) {
+    const float d = b->depth(u, v);
+    if (d <= 0) continue;
+    if (!solid.exact) {
+      if (const std::optional<Place> place = place_of(data, solid, b->arc, x)) return place;
+    } else if (d > depth) {
+      depth = d;
+      deepest = b;
+    }
+  }
+  if (deepest == nullptr) return std::nullopt;
+  return place_of(data, solid, deepest->arc, x);
+}
+
+// Paper §3.2: kd-tree over detection cylinders.
+std::optional<Place> detect_by_tree(const Rounding::Data& data, const Solid& solid,
+                                    std::uint32_t solid_index, Vec3d x) {
+  std::uint32_t found[kMaxDetected];
+  const std::size_t count =
+      data.tree->find(solid_index, Vec3f(x), float(kOnSurface * solid.size), found);
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::optional<Place> place = place_of(data, solid, found[i], x);
+    if (place) return place;
+  }
+  return std::nullopt;
+}
+
+}  // namespace
+
+const char* name_of(Feature feature) {
+  switch (feature) {
+    case Feature::face:
+      return "face";
+    case Feature::edge:
+      return "edge";
+    case Feature::corner:
+      return "corner";
+    case Feature::fillet:
+      return "fillet";
+    case Feature::csg:
+      return "csg";
+  }
+  return "face";
+}
+
+Rounding::Rounding(std::unique_ptr<const Data> data) : data_(std::move(data)) {}
+Rounding::Rounding(Rounding&&) noexcept = default;
+Rounding& Rounding::operator=(Rounding&&) noexcept = default;
+Rounding::~Rounding() = default;
+
+bool Rounding::is_kept(std::uint32_t triangle, double u, double v) const {
+  if (data_->tree) return data_->band_begin[triangle] == data_->band_begin[triangle + 1];
+  const Band* const last = data_->bands.data() + data_->band_begin[triangle + 1];
+  for (const Band* b = data_->bands.data() + data_->band_begin[triangle]; b != last; ++b) {
+    if (b->depth(float(u), float(v)) > 0) return false;
+  }
+  return true;
+}
+
+Resolution Rounding::resolve(const Ray& ray, const MeshHit& hit) const {
+  Resolution out;
+  out.hit.t = hit.t;
+  const std::uint32_t face_index = data_->face[hit.triangle];
+  if (face_index == kNone) return out;
+  const std::uint32_t solid_index = data_->faces[face_index].solid;
+  const Solid& solid = data_->solids[solid_index];
+  const FaceHit at = locate(*data_, ray, hit);
+  const Face& face = data_->faces[at.face];
+  out.hit = {at.t, face.normal, Feature::face};
+  const std::optional<Place> place = data_->tree ? detect_by_tree(*data_, solid, solid_index, at.x)
+                                                 : detect_by_bands(*data_, solid, hit, at.x);
+  if (!place) return out;
+  const bool entering = dot(face.normal, at.direction) < 0;
+  const Vec3d direction = entering ? at.direction : -at.direction;
+  const std::optional<WalkHit> met = walk(*data_, solid, *place, at.x, direction);
+  if (!met) {
+    out.outcome = Resolution::Outcome::passed;
+    return out;
+  }
+  out.outcome = Resolution::Outcome::moved;
+  const double along = met->distance / at.scale;
+  out.hit = {entering ? at.t + along : at.t - along, met->normal, met->feature};
+  return out;
+}
+
+std::uint32_t Rounding::solid_of(std::uint32_t triangle) const {
+  const std::uint32_t face = data_->face[triangle];
+  return face == kNone ? kNone : data_->faces[face].solid;
+}
+
+bool Rounding::is_exact(std::uint32_t solid) const {
+  return solid != kNone && data_->solids[solid].exact;
+}
+
+Vec3d Rounding::face_normal(std::uint32_t triangle) const {
+  const std::uint32_t face = data_->face[triangle];
+  return face == kNone ? Vec3d(0, 0, 1) : data_->faces[face].normal;
+}
+
+const RoundingReport& Rounding::report() const {
+  return data_->report;
+}
+
+}  // namespace arris

@@ -1,0 +1,89 @@
+// rounding_data.h — what a Rounding keeps: bands, arcs and nodes
+// What       The rounded surface beside the flat faces consists of cylinders around arcs (edges of the eroded
+//            solid E) and spheres around nodes (its vertices); arcs and nodes link to each other (paper §3.1,
+//            the adjacency graph). A band says where on a triangle one arc's rounding takes the face away.
+// Units      positions are floats relative to the solid's centre, so that rounding errors scale with the solid
+// Legend     r radius, n outward face normal, E = {x : n·x ≤ d − r for all faces}
+// Source     Courtin et al. §3.1, Fig. 6 (detection cylinders); bands are their trace on a face: see bands.h
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "arris/rounding.h"
+#include "edges/flat_regions.h"
+#include "rounding/detection_tree.h"
+
+namespace arris {
+
+// On the triangle, at barycentric (u, v): depth = c0 + cu·u + cv·v > 0 where the arc's rounding has taken the
+// face away. 16 bytes, so that the four bands of a box's triangle fit a cache line.
+struct Band {
+  float c0, cu, cv;
+  std::uint32_t arc;
+
+  [[nodiscard]] float depth(float u, float v) const { return c0 + cu * u + cv * v; }
+};
+
+// An edge of E between two faces: axis of a rounding cylinder from p0 to p1, along n_a × n_b. A stub
+// (node1 == kNone) only marks the direction in which an edge that stays sharp leaves node0.
+struct Arc {
+  Vec3f p0, p1;
+  std::uint32_t face_a, face_b;
+  std::uint32_t node0, node1;
+
+  [[nodiscard]] bool is_stub() const { return node1 == kNone; }
+};
+
+// Where arcs end.
+struct Node {
+  enum class Kind : std::uint8_t {
+    sphere,  // a corner: centre of a rounding sphere
+    mitre,   // two cylinders meet in a plane: a chain of rounded edges bends at smooth edges
+    cap,     // the rounding ends at a plane: its edge runs into a concave corner or fades out
+  };
+  Vec3f position;
+  std::uint32_t first_link = 0;
+  std::uint16_t link_count = 0;
+  Kind kind = Kind::sphere;
+};
+
+struct Face {
+  Vec3d normal;
+  double d;
+  std::uint32_t solid;
+};
+
+struct Solid {
+  Vec3d center;
+  double size = 0;
+  std::uint32_t first_arc = 0, arc_count = 0;
+  std::uint32_t first_node = 0, node_count = 0;
+  std::uint32_t first_face = 0, face_count = 0;
+  bool closed = false, convex = false;
+  bool exact = false;    // closed, convex, every edge rounded: the surface is that of opening(P)
+  bool rewired = false;  // E lost features of P: the arc nearest to a point must be searched for
+};
+
+struct Rounding::Data {
+  double radius = 0;
+  std::vector<std::uint32_t> band_begin;  // per triangle, and one more
+  std::vector<Band> bands;
+  std::vector<std::uint32_t> face;  // per triangle; kNone if degenerate
+  std::vector<Face> faces;
+  std::vector<Arc> arcs;
+  std::vector<Node> nodes;
+  std::vector<std::uint32_t>
+      links;  // arcs at each node; a cap's second link is its wall face or kNone
+  std::vector<Solid> solids;
+  std::unique_ptr<const DetectionTree> tree;  // with Detection::kd_tree
+  RoundingReport report;
+};
+
+// Direction of an arc, from p0 to p1.
+inline Vec3d arc_axis(const Face& a, const Face& b) {
+  return normalize(cross(a.normal, b.normal));
+}
+
+}  // namespace arris
