@@ -10,6 +10,8 @@
 #include "base/nearest_name.h"
 #include "base/utf8_text.h"
 #include "io/file_bytes.h"
+#include "io/gltf_buffers.h"
+#include "io/gltf_reader.h"
 #include "io/mesh_readers.h"
 
 namespace arris {
@@ -36,6 +38,10 @@ constexpr Format kFormats[] = {
     {".stl", "STL", [](const SceneFile& f) { return read_stl(f.bytes, f.name); }, looks_like_stl},
     {".ply", "PLY", [](const SceneFile& f) { return read_ply(f.bytes, f.name); }, looks_like_ply},
     {".off", "OFF", [](const SceneFile& f) { return read_off(f.bytes, f.name); }, looks_like_off},
+    {".glb", "GLB",
+     [](const SceneFile& f) { return read_gltf(f.bytes, f.name, f.path.parent_path()); }, is_glb},
+    {".gltf", "glTF",
+     [](const SceneFile& f) { return read_gltf(f.bytes, f.name, f.path.parent_path()); }, nullptr},
 };
 
 std::string lower(std::string text) {
