@@ -22,11 +22,13 @@ SampleRange SamplePasses::next() {
   const std::uint32_t first = options_.samples.first;
   const std::uint32_t left = std::max(options_.samples.last, position_) - position_;
   const std::uint32_t made = position_ - first;
+  if (options_.stop != nullptr && options_.stop->load()) {
+    return {position_, position_};
+  }
   std::uint32_t count = 1;
   if (made > 0) {
     const double elapsed = elapsed_seconds();
-    const bool late = options_.time_limit_seconds > 0 && elapsed >= options_.time_limit_seconds;
-    if (late || (options_.stop != nullptr && options_.stop->load())) {
+    if (options_.time_limit_seconds > 0 && elapsed >= options_.time_limit_seconds) {
       return {position_, position_};
     }
     double seconds = kPassSeconds;

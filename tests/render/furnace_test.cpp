@@ -1,0 +1,69 @@
+// A white object under white light from everywhere is invisible, whatever its material.
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "support/render_scenes.h"
+
+namespace arris::test {
+namespace {
+
+struct FurnaceCase {
+  std::string name;
+  Material material;
+  double tolerance;
+};
+
+Material white() {
+  Material material;
+  material.base_color = Rgb(1);
+  return material;
+}
+
+std::vector<FurnaceCase> furnace_cases() {
+  std::vector<FurnaceCase> cases;
+  cases.push_back({"lambert", make_lambert(1), 0.002});
+  for (const float roughness : {0.0F, 0.3F, 1.0F}) {
+    const std::string suffix = "_roughness_" + std::to_string(int(roughness * 10));
+    Material m = white();
+    m.roughness = roughness;
+    cases.push_back({"plastic" + suffix, m, 0.025});
+    m.clearcoat = 1;
+    m.clearcoat_roughness = 0.1F;
+    cases.push_back({"coated" + suffix, m, 0.03});
+    m = white();
+    m.roughness = roughness;
+    m.metallic = 1;
+    cases.push_back({"metal" + suffix, m, 0.025});
+    m = white();
+    m.roughness = roughness;
+    m.transmission = 1;
+    cases.push_back({"glass" + suffix, m, 0.03});
+  }
+  return cases;
+}
+
+class Furnace : public testing::TestWithParam<FurnaceCase> {};
+
+TEST_P(Furnace, stays_white) {
+  Camera camera;
+  camera.position = {2, -3, 2};
+  camera.fov_deg = 28;
+  for (const Mesh& mesh : {make_sphere_mesh(4), make_box_mesh({0.7, 0.7, 0.7})}) {
+    Scene scene = make_empty_scene(camera);
+    scene.image.max_depth = 100;
+    scene.environment = ConstantEnvironment{Rgb(1)};
+    add_object(scene, mesh, GetParam().material);
+    RenderOptions options;
+    options.aovs = {"object"};
+    const Picture picture = render_path(scene, 256, options).picture;
+    EXPECT_EQ(picture.layers[0].image.at(4, 4, 0), 1.0F);  // the object is in the picture
+    EXPECT_NEAR(mean_of(picture.color), 1.0, GetParam().tolerance) << mesh.name;
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(render, Furnace, testing::ValuesIn(furnace_cases()),
+                         [](const auto& test) { return test.param.name; });
+
+}  // namespace
+}  // namespace arris::test
