@@ -2,7 +2,7 @@
 // What       the described scene with its camera and environment filled in, its acceleration structure
 //            and lights; and the two ray functions, which are the only way renderers meet geometry
 // Guarantee  const after prepare_scene(): every function is safe from any number of threads.
-//            No ray passes between two triangles that share an edge.
+//            No ray passes between two triangles that share an edge (see embree_scene.h).
 // Limits     float coordinates, in proportion to their size
 // Frames     everything here is in world space
 #pragma once

@@ -189,7 +189,7 @@ TEST(closed_form, mirror_shows_a_light_hidden_from_the_camera) {
   mirror.metallic = 1;
   mirror.roughness = 0;
   add_object(scene, make_square_mesh(1), mirror);
-  scene.lights.push_back(AreaLight{.corner = {-2, 6, 2},
+  scene.lights.push_back(AreaLight{.corner = {-2, 6, 4},
                                    .edge_u = {4, 0, 0},
                                    .edge_v = {0, 0, 4},
                                    .radiance = Rgb(2),

@@ -85,10 +85,10 @@ TEST(validate_scene, rejects_bad_cameras) {
 
 TEST(validate_scene, rejects_bad_lights_and_environments) {
   Scene scene = valid_scene();
-  scene.lights[3] = AreaLight{.edge_u = {1, 0, 0}, .edge_v = {2, 0, 0}};
+  scene.lights[3] = AreaLight{.corner = {}, .edge_u = {1, 0, 0}, .edge_v = {2, 0, 0}};
   expect_problem(scene, "light 3: edges (1, 0, 0) and (2, 0, 0) span no area");
   scene = valid_scene();
-  scene.lights[1] = SpotLight{.inner_angle = 2, .outer_angle = 1};
+  scene.lights[1] = SpotLight{.position = {}, .inner_angle = 2, .outer_angle = 1};
   expect_problem(scene, "light 1: angles are");
   scene = valid_scene();
   scene.environment =
@@ -98,10 +98,13 @@ TEST(validate_scene, rejects_bad_lights_and_environments) {
 
 TEST(validate_scene, rejects_bad_rounding) {
   Scene scene = valid_scene();
-  scene.objects[0].rounding = RoundingSettings{.method = RoundMethod::exact, .radius = -1.0};
+  RoundingSettings rounding;
+  rounding.method = RoundMethod::exact;
+  rounding.radius = -1.0;
+  scene.objects[0].rounding = rounding;
   expect_problem(scene, "object \"leg\": rounding radius is -1");
-  scene.objects[0].rounding =
-      RoundingSettings{.method = RoundMethod::exact, .radius = PercentOfInradius{120}};
+  rounding.radius = PercentOfInradius{120};
+  scene.objects[0].rounding = rounding;
   expect_problem(scene, "120% of the inradius");
 }
 
