@@ -10,9 +10,8 @@ namespace {
 constexpr double kAngleTolerance = 1e-5;
 
 struct TrianglePlane {
-  Vec3d normal;        // unit; zero for a sliver until it takes its neighbour's
-  double longest = 0;  // edge
-  std::uint32_t longest_edge = 0;
+  Vec3d normal;       // unit; not meaningful for a sliver
+  double height = 0;  // over the longest edge: the smaller, the less the normal is worth
 };
 
 class RegionBuilder {
@@ -27,6 +26,7 @@ class RegionBuilder {
   }
 
  private:
+  // Regions grow from the best conditioned triangles first, so that slivers join the face they lie in.
   void build_shell(std::uint32_t shell_index) {
     const Shell& shell = mesh_.shells[shell_index];
     center_ = shell.center();
@@ -35,14 +35,13 @@ class RegionBuilder {
     const double coordinate_error = 4 * 6e-8 * max_component(max(extent, -extent));
     tolerance_ = kPlaneTolerance * shell.size() + coordinate_error;
     const auto first = mesh_.triangles_by_shell.begin() + shell.first_triangle;
-    const auto last = first + shell.triangle_count;
-    for (auto t = first; t != last; ++t) planes_[*t] = plane_of(*t);
-    for (auto t = first; t != last; ++t) {
-      const bool sliver = length_squared(planes_[*t].normal) == 0;
-      if (out_.region[*t] == kNone && !sliver) grow(*t, shell_index);
-    }
-    for (auto t = first; t != last; ++t) {  // slivers that no region reached
-      if (out_.region[*t] == kNone) grow(*t, shell_index);
+    seeds_.assign(first, first + shell.triangle_count);
+    for (const std::uint32_t t : seeds_) planes_[t] = plane_of(t);
+    std::ranges::sort(seeds_, [&](std::uint32_t a, std::uint32_t b) {
+      return planes_[a].height != planes_[b].height ? planes_[a].height > planes_[b].height : a < b;
+    });
+    for (const std::uint32_t t : seeds_) {
+      if (out_.region[t] == kNone) grow(t, shell_index);
     }
   }
 
@@ -55,31 +54,29 @@ class RegionBuilder {
     const Vec3d a = local(v[0]);
     const Vec3d b = local(v[1]);
     const Vec3d c = local(v[2]);
-    TrianglePlane plane;
-    const double lengths[3] = {length(b - a), length(c - b), length(a - c)};
-    for (std::uint32_t k = 0; k < 3; ++k) {
-      if (lengths[k] > plane.longest) {
-        plane.longest = lengths[k];
-        plane.longest_edge = 3 * t + k;
-      }
-    }
+    const double longest_squared =
+        std::max({length_squared(b - a), length_squared(c - b), length_squared(a - c)});
     const Vec3d n = cross(b - a, c - a);
     const double doubled_area = length(n);
-    // Lower than the tolerance: its direction is noise.
-    if (doubled_area > tolerance_ * plane.longest) plane.normal = n / doubled_area;
-    return plane;
+    if (doubled_area == 0) return {Vec3d(0, 0, 1), 0};
+    return {n / doubled_area, doubled_area / std::sqrt(longest_squared)};
   }
 
-  [[nodiscard]] bool is_coplanar(std::uint32_t h, std::uint32_t twin) const {
-    const std::uint32_t t = h / 3;
-    const std::uint32_t s = twin / 3;
-    if (length_squared(planes_[s].normal) == 0) return planes_[s].longest_edge == twin;
-    if (dot(planes_[t].normal, planes_[s].normal) < 0.5) return false;
-    const Vec3d on_edge = local(mesh_.origin(h));
-    const Vec3d apex_s = local(mesh_.origin(WeldedMesh::previous(twin))) - on_edge;
-    const Vec3d apex_t = local(mesh_.origin(WeldedMesh::previous(h))) - on_edge;
-    return std::abs(dot(planes_[t].normal, apex_s)) <= tolerance_ &&
-           std::abs(dot(planes_[s].normal, apex_t)) <= tolerance_;
+  // Is t in the plane of the region's seed? The plane is known to `tolerance_` over the seed's own height and
+  // less well farther out (coordinates are some sixteen times finer than the tolerance).
+  [[nodiscard]] bool is_coplanar(std::uint32_t seed, std::uint32_t t) const {
+    const TrianglePlane& plane = planes_[seed];
+    const bool sliver = planes_[t].height <= 4 * tolerance_;
+    if (!sliver && dot(plane.normal, planes_[t].normal) < 0.5) return false;
+    const Vec3d on_plane = local(mesh_.triangles[seed][0]);
+    const double spread = plane.height > 0 ? tolerance_ / (8 * plane.height) : 0;
+    for (const std::uint32_t v : mesh_.triangles[t]) {
+      const Vec3d p = local(v) - on_plane;
+      const double off = dot(plane.normal, p);
+      if (std::abs(off) <= tolerance_) continue;
+      if (std::abs(off) > tolerance_ + spread * length(p)) return false;
+    }
+    return true;
   }
 
   void grow(std::uint32_t seed, std::uint32_t shell_index) {
@@ -91,37 +88,17 @@ class RegionBuilder {
       for (std::uint32_t k = 0; k < 3; ++k) {
         const std::uint32_t twin = mesh_.twin[3 * t + k];
         if (twin > kLastHalfEdge || out_.region[twin / 3] != kNone) continue;
-        if (!is_coplanar(3 * t + k, twin)) continue;
-        if (length_squared(planes_[twin / 3].normal) == 0) {
-          planes_[twin / 3].normal = planes_[t].normal;
-        }
+        if (!is_coplanar(seed, twin / 3)) continue;
         out_.region[twin / 3] = index;
         members_.push_back(twin / 3);
       }
     }
-    Plane plane = fit_plane();
-    if (members_.size() > 2 && farthest_from(plane) > 4 * tolerance_) {
-      for (std::size_t i = 1; i < members_.size(); ++i) {
-        out_.region[members_[i]] = std::uint32_t(out_.planes.size() + i);
-      }
-      for (const std::uint32_t t : members_) {
-        single_.assign(1, t);
-        members_.swap(single_);
-        add_region(fit_plane(), shell_index);
-        members_.swap(single_);
-      }
-      return;
-    }
-    add_region(plane, shell_index);
-  }
-
-  void add_region(const Plane& plane, std::uint32_t shell_index) {
-    out_.planes.push_back(plane);
+    out_.planes.push_back(fit_plane(seed));
     out_.shell.push_back(shell_index);
   }
 
   // Area-weighted over the members.
-  [[nodiscard]] Plane fit_plane() const {
+  [[nodiscard]] Plane fit_plane(std::uint32_t seed) const {
     Vec3d normal;
     Vec3d weighted_center;
     double area = 0;
@@ -136,20 +113,12 @@ class RegionBuilder {
       weighted_center += (a + b + c) * (doubled_area / 3);
       area += doubled_area;
     }
-    Plane plane;
-    plane.normal = length_squared(normal) > 0 ? normalize(normal) : planes_[members_[0]].normal;
-    if (area > 0) plane.d = dot(plane.normal, weighted_center / area);
-    return plane;
-  }
-
-  [[nodiscard]] double farthest_from(const Plane& plane) const {
-    double distance = 0;
-    for (const std::uint32_t t : members_) {
-      for (const std::uint32_t v : mesh_.triangles[t]) {
-        distance = std::max(distance, std::abs(dot(plane.normal, local(v)) - plane.d));
-      }
+    Plane plane{planes_[seed].normal, dot(planes_[seed].normal, local(mesh_.triangles[seed][0]))};
+    if (length_squared(normal) > 0) {
+      plane.normal = normalize(normal);
+      plane.d = dot(plane.normal, weighted_center / area);
     }
-    return distance;
+    return plane;
   }
 
   const WeldedMesh& mesh_;
@@ -157,7 +126,7 @@ class RegionBuilder {
   FlatRegions out_;
   Vec3d center_;
   double tolerance_ = 0;
-  std::vector<std::uint32_t> members_, single_;
+  std::vector<std::uint32_t> seeds_, members_;
 };
 
 bool contains(const Shell& outer, const Shell& inner) {

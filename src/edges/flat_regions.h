@@ -2,9 +2,7 @@
 // What       groups the triangles of each shell into flat regions (the faces of the polyhedron) with their
 //            planes, and classes the edges between regions
 // In / Out   planes are outward, in coordinates relative to the shell's centre: normal·(x − center) = d
-// Limits     a region that drifts off its plane (a finely tessellated curved surface) falls apart into its
-//            single triangles
-// Cost       linear
+// Cost       linear, but for sorting the triangles by how well they define a plane
 #pragma once
 
 #include <cstdint>

@@ -12,7 +12,7 @@ namespace {
 constexpr std::uint32_t kUnset = kNone;
 constexpr std::uint32_t kThrough = kNone - 1;  // the chain goes straight on here
 
-// An arc shorter than this (relative to the shell) counts as no length rather than as turned over.
+// An arc no longer than this (relative to the shell) has vanished.
 constexpr double kLengthTolerance = 1e-6;
 
 }  // namespace
@@ -222,7 +222,7 @@ void NetworkBuilder::make_spheres() {
   }
 }
 
-// False if the arc has negative length.
+// False if the arc has vanished.
 bool NetworkBuilder::make_arc(std::uint32_t first) {
   std::uint32_t h = first;
   for (;;) {
@@ -250,7 +250,7 @@ bool NetworkBuilder::make_arc(std::uint32_t first) {
   ++out_.rounded_edges;
   const Arc arc{Vec3f(e0.point), Vec3f(e1.point), face_a, face_b, e0.node, e1.node};
   out_.arcs.push_back({arc, v0, v1});
-  if (arc_length >= -kLengthTolerance * size_) return true;
+  if (arc_length > kLengthTolerance * size_) return true;
   out_.inverted = true;
   return false;
 }

@@ -36,7 +36,7 @@ struct ShellNetwork {
   std::uint64_t rounded_edges = 0;    // chains of mesh edges
   std::uint64_t rounded_corners = 0;  // mesh corners that got spheres
   std::uint64_t shortened_edges = 0;  // left sharp: the radius needs more length than they have
-  bool inverted = false;              // some arc has negative length
+  bool inverted = false;              // some arc has vanished or turned over
   // The largest radius at which no arc has vanished yet, from the lengths of the arcs.
   double radius_limit = std::numeric_limits<double>::infinity();
 };
