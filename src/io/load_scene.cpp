@@ -36,6 +36,8 @@ struct Format {
 // One row a format; the first that recognises a file's content names it.
 constexpr Format kFormats[] = {
     {".stl", "STL", [](const SceneFile& f) { return read_stl(f.bytes, f.name); }, looks_like_stl},
+    {".obj", "OBJ",
+     [](const SceneFile& f) { return read_obj(f.bytes, f.name, files_beside(f.path)); }, nullptr},
     {".ply", "PLY", [](const SceneFile& f) { return read_ply(f.bytes, f.name); }, looks_like_ply},
     {".off", "OFF", [](const SceneFile& f) { return read_off(f.bytes, f.name); }, looks_like_off},
     {".glb", "GLB",

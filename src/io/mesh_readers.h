@@ -30,4 +30,15 @@ bool looks_like_ply(std::span<const std::uint8_t> bytes);
 Scene read_off(std::span<const std::uint8_t> bytes, const std::string& file);
 bool looks_like_off(std::span<const std::uint8_t> bytes);
 
+// How the OBJ reader reaches the files that a model names, relative to the model; each returns nothing
+// where there is no such file and throws Error where it can't be read.
+struct ObjFiles {
+  std::function<std::optional<std::vector<std::uint8_t>>(const std::string& name)> find_library;
+  std::function<std::optional<Texture>(const std::string& name)> find_texture;
+};
+// Those beside the model's own file.
+ObjFiles files_beside(const std::filesystem::path& model);
+
+Scene read_obj(std::span<const std::uint8_t> bytes, const std::string& file, const ObjFiles& files);
+
 }  // namespace arris

@@ -3,15 +3,16 @@
 // three
 //            corners (12 floats), 2 bytes of attributes; all little-endian
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cstring>
 #include <utility>
 
 #include "arris/error.h"
 #include "base/utf8_text.h"
+#include "io/key_index.h"
 #include "io/mesh_readers.h"
 #include "io/mesh_scene.h"
-#include "io/position_index.h"
 #include "io/text_scanner.h"
 
 namespace arris {
@@ -24,6 +25,10 @@ constexpr std::size_t kNormalBytes = 12;
 constexpr std::size_t kPrefetchFacets = 8;
 // How much of a file is looked at to tell text from binary data.
 constexpr std::size_t kSniffedBytes = 1024;
+
+using PositionIndex = KeyIndex<Vec3f>;
+// Added, it makes -0 the 0 that it equals.
+constexpr Vec3f kPositiveZero(0.0F);
 
 static_assert(std::endian::native == std::endian::little, "floats are copied as they are");
 
@@ -102,20 +107,20 @@ Scene read_binary(std::span<const std::uint8_t> bytes, const std::string& file) 
   Mesh mesh;
   mesh.name = name_from_file(file);
   mesh.triangles.resize(count);
-  PositionIndex index(count);
+  PositionIndex index(count / 2);  // a closed mesh has half as many vertices as triangles
   for (std::size_t facet = 0; facet < count; ++facet) {
     if (facet + kPrefetchFacets < count) {
       for (const Vec3f& corner : facet_corners(facets + kFacetBytes * (facet + kPrefetchFacets))) {
-        index.prefetch(corner);
+        index.prefetch(corner + kPositiveZero);
       }
     }
     const std::array<Vec3f, 3> corners = facet_corners(facets + kFacetBytes * facet);
     for (std::size_t k = 0; k < 3; ++k) {
       if (!is_finite(corners[k])) fail_not_finite(file, facet);
-      mesh.triangles[facet][k] = index.add(corners[k]);
+      mesh.triangles[facet][k] = index.add(corners[k] + kPositiveZero);
     }
   }
-  mesh.positions = index.take_positions();
+  mesh.positions = index.take_keys();
   Scene scene = make_mesh_scene(file);
   add_object(scene, std::move(mesh));
   return scene;
@@ -165,7 +170,7 @@ class AsciiReader {
     if (scene_.objects.size() == kMaxObjects) {
       throw text_.error("more than " + std::to_string(kMaxObjects) + " solids; join or split them");
     }
-    mesh.positions = index.take_positions();
+    mesh.positions = index.take_keys();
     add_object(scene_, std::move(mesh));
   }
 
@@ -182,7 +187,7 @@ class AsciiReader {
       position.x = coordinate("a vertex's x");
       position.y = coordinate("a vertex's y");
       position.z = coordinate("a vertex's z");
-      vertex = index.add(position);
+      vertex = index.add(position + kPositiveZero);
       if (vertex == kMaxCorners) throw text_.error("the solid has too many vertices; split it");
     }
     expect("endloop");

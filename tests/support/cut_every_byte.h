@@ -11,11 +11,9 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <exception>
-#include <memory>
 #include <span>
 #include <string>
 #include <string_view>
@@ -72,10 +70,9 @@ inline std::string problem_of(const Scene& scene) {
 // What is wrong with how read() takes the bytes; empty if nothing is.
 template <class Read>
 std::string problem_of_reading(std::span<const std::uint8_t> bytes, Read&& read) {
-  const auto copy = std::make_unique<std::uint8_t[]>(bytes.size());
-  std::copy(bytes.begin(), bytes.end(), copy.get());
+  const std::vector<std::uint8_t> copy(bytes.begin(), bytes.end());
   try {
-    return problem_of(read(std::span<const std::uint8_t>(copy.get(), bytes.size())));
+    return problem_of(read(std::span<const std::uint8_t>(copy)));
   } catch (const Error& error) {
     const std::string_view message = error.what();
     if (error.kind() != Error::Kind::input) return "kind is not input: " + std::string(message);
