@@ -65,6 +65,13 @@ struct RoundedHit {
   Feature feature = Feature::face;
 };
 
+// What the host knows of where a ray starts, for hits from inside.
+enum class RayStart : std::uint8_t {
+  unknown,  // the kernel finds out
+  outside,  // outside the rounded solid: in the open, or in the void between the sharp and the rounded edge
+  inside,  // inside the rounded solid (glass, a room)
+};
+
 // What becomes of one hit on the mesh.
 struct Resolution {
   enum class Outcome : std::uint8_t {
@@ -93,9 +100,16 @@ class Rounding {
   // True if the hit is on the rounded solid itself. u, v as in MeshHit.
   [[nodiscard]] bool is_kept(std::uint32_t triangle, double u, double v) const;
 
-  // For a hit that need not be kept. A hit from inside (direction along the outward normal) is resolved
-  // towards the ray's origin: the moved hit has a smaller t.
-  [[nodiscard]] Resolution resolve(const Ray& ray, const MeshHit& hit) const;
+  // For a hit that need not be kept. A hit from inside (direction along the outward normal) is where the ray
+  // leaves the sharp solid: the moved hit has a smaller t. A ray that starts in the void of an exact solid and
+  // leaves by this hit is resolved from its start: give RayStart::unknown and call this for kept hits from
+  // inside, too.
+  [[nodiscard]] Resolution resolve(const Ray& ray, const MeshHit& hit,
+                                   RayStart start = RayStart::unknown) const;
+
+  // Whether a point, in the mesh's space, lies in the rounded solid. Exact solids only (see is_exact).
+  // Cost: linear in the solid's faces.
+  [[nodiscard]] bool contains(std::uint32_t solid, Vec3d point) const;
 
   // The solid (connected component) of a triangle, and whether it is exact (see Guarantee): once a ray has
   // passed such a solid it never meets it again.

@@ -1,7 +1,9 @@
 // resolve.cpp — what becomes of a hit on the mesh
 // Source     Courtin et al. §4; the design's ray logic: a hit in the void is walked on to the rounded surface, or
 //            passes. A hit from inside is the mirror image: walked back from where the ray leaves P.
+#include <algorithm>
 #include <cmath>
+#include <span>
 
 #include "rounding/rounding_data.h"
 #include "rounding/walk.h"
@@ -39,10 +41,53 @@ FaceHit locate(const Rounding::Data& data, const Ray& ray, const MeshHit& hit) {
   return at;
 }
 
+bool is_in_solid(const Rounding::Data& data, const Solid& solid, Vec3d x) {
+  for (std::uint32_t f = solid.first_face; f < solid.first_face + solid.face_count; ++f) {
+    if (dot(data.faces[f].normal, x) > data.faces[f].d) return false;
+  }
+  return true;
+}
+
+// Is x in the exact solid P but not in opening(P)? Where the nearest point of E lies on a face of E, x is within r of
+// it, being inside P; else it is the nearest arc or node that counts.
+bool is_in_void(const Rounding::Data& data, const Solid& solid, Vec3d x) {
+  if (!is_in_solid(data, solid, x)) return false;
+  const auto faces = std::span(data.faces).subspan(solid.first_face, solid.face_count);
+  bool in_erosion = true;
+  for (const Face& near : faces) {
+    const double above = dot(near.normal, x) - (near.d - data.radius);
+    if (above <= 0) continue;
+    in_erosion = false;
+    const Vec3d foot = x - near.normal * above;
+    const auto is_beyond = [&](const Face& f) {
+      return dot(f.normal, foot) > f.d - data.radius + kOnSurface * solid.size;
+    };
+    if (std::ranges::none_of(faces, is_beyond)) return false;
+  }
+  if (in_erosion) return false;
+  const std::optional<Place> place = search_place(data, solid, x);
+  return place && distance_to_place(data, *place, x) > data.radius;
+}
+
+// A ray that starts in the void: on to the rounded surface, or out.
+Resolution walk_from_void(const Rounding::Data& data, const Solid& solid, Vec3d origin,
+                          const FaceHit& exit) {
+  Resolution out;
+  out.hit = {exit.t, data.faces[exit.face].normal, Feature::face};
+  out.outcome = Resolution::Outcome::passed;
+  const std::optional<Place> place = search_place(data, solid, origin);
+  if (!place) return out;
+  const std::optional<WalkHit> met = walk(data, solid, *place, origin, exit.direction);
+  if (!met) return out;
+  out.outcome = Resolution::Outcome::moved;
+  out.hit = {met->distance / exit.scale, met->normal, met->feature};
+  return out;
+}
+
 // Solids that aren't exact: bands may reach beyond the void. x is in it if it lies under the arc's faces and
 // farther than r from the place.
-bool is_in_void(const Rounding::Data& data, const Solid& solid, std::uint32_t arc_index,
-                Place place, Vec3d x) {
+bool is_under_arc(const Rounding::Data& data, const Solid& solid, std::uint32_t arc_index,
+                  Place place, Vec3d x) {
   const double slack = kOnSurface * solid.size;
   if (distance_to_place(data, place, x) <= data.radius + slack) return false;
   const Arc& arc = data.arcs[place.is_node ? arc_index : place.index];
@@ -59,7 +104,7 @@ std::optional<Place> place_of(const Rounding::Data& data, const Solid& solid, st
                               Vec3d x) {
   if (solid.rewired) return search_place(data, solid, x);
   const std::optional<Place> place = find_place(data, solid, arc, x);
-  if (place && !solid.exact && !is_in_void(data, solid, arc, *place, x)) return std::nullopt;
+  if (place && !solid.exact && !is_under_arc(data, solid, arc, *place, x)) return std::nullopt;
   return place;
 }
 
@@ -129,7 +174,7 @@ bool Rounding::is_kept(std::uint32_t triangle, double u, double v) const {
   return true;
 }
 
-Resolution Rounding::resolve(const Ray& ray, const MeshHit& hit) const {
+Resolution Rounding::resolve(const Ray& ray, const MeshHit& hit, RayStart start) const {
   Resolution out;
   out.hit.t = hit.t;
   const std::uint32_t face_index = data_->face[hit.triangle];
@@ -139,10 +184,16 @@ Resolution Rounding::resolve(const Ray& ray, const MeshHit& hit) const {
   const FaceHit at = locate(*data_, ray, hit);
   const Face& face = data_->faces[at.face];
   out.hit = {at.t, face.normal, Feature::face};
+  const bool entering = dot(face.normal, at.direction) < 0;
+  if (!entering && solid.exact && start != RayStart::inside) {
+    const Vec3d origin = ray.origin - solid.center;
+    if (start == RayStart::outside || is_in_void(*data_, solid, origin)) {
+      return walk_from_void(*data_, solid, origin, at);
+    }
+  }
   const std::optional<Place> place = data_->tree ? detect_by_tree(*data_, solid, solid_index, at.x)
                                                  : detect_by_bands(*data_, solid, hit, at.x);
   if (!place) return out;
-  const bool entering = dot(face.normal, at.direction) < 0;
   const Vec3d direction = entering ? at.direction : -at.direction;
   const std::optional<WalkHit> met = walk(*data_, solid, *place, at.x, direction);
   if (!met) {
@@ -153,6 +204,12 @@ Resolution Rounding::resolve(const Ray& ray, const MeshHit& hit) const {
   const double along = met->distance / at.scale;
   out.hit = {entering ? at.t + along : at.t - along, met->normal, met->feature};
   return out;
+}
+
+bool Rounding::contains(std::uint32_t solid_index, Vec3d point) const {
+  const Solid& solid = data_->solids[solid_index];
+  const Vec3d x = point - solid.center;
+  return is_in_solid(*data_, solid, x) && !is_in_void(*data_, solid, x);
 }
 
 std::uint32_t Rounding::solid_of(std::uint32_t triangle) const {
