@@ -16,19 +16,6 @@ namespace {
 
 constexpr float kTwoPiSquared = float(2.0 * kPi * kPi);
 
-struct MapPoint {
-  float u, v;       // of the map, 0…1
-  float sin_theta;  // from the zenith
-};
-
-MapPoint map_point(const MapFrame& frame, Vec3f wi) {
-  const float x = dot(wi, frame.x);
-  const float y = dot(wi, frame.y);
-  const float z = clamp_to(dot(wi, frame.z), -1.0F, 1.0F);
-  const float v = angle_of_cosine(z) * std::numbers::inv_pi_v<float>;
-  return {turn_of(y, x), v, std::sqrt(max_of(x * x + y * y, 1e-14F))};
-}
-
 float relative_luminance(Rgb c) {
   return 0.2126F * c.x + 0.7152F * c.y + 0.0722F * c.z;
 }
@@ -221,40 +208,48 @@ EnvironmentMap make_environment_map(int width_px, int height_px, std::vector<Rgb
   return map;
 }
 
-Rgb eval_environment_map(const EnvironmentMap& map, std::span<const Rgb> radiance, Vec3f wi) {
-  const MapPoint p = map_point(map.frame, wi);
+MapPoint map_point(const EnvironmentMap& map, Vec3f wi) {
+  const float x = dot(wi, map.frame.x);
+  const float y = dot(wi, map.frame.y);
+  const float z = clamp_to(dot(wi, map.frame.z), -1.0F, 1.0F);
+  return {turn_of(y, x), angle_of_cosine(z) * std::numbers::inv_pi_v<float>,
+          std::sqrt(max_of(x * x + y * y, 1e-14F))};
+}
+
+Rgb eval_environment_map(const EnvironmentMap& map, std::span<const Rgb> radiance, MapPoint at) {
   const int w = map.width_px;
   const int h = map.height_px;
-  const float x = p.u * float(w) - 0.5F;
-  const float y = p.v * float(h) - 0.5F;
-  const float floor_x = std::floor(x);
-  const float floor_y = std::floor(y);
-  const int x0 = int(floor_x) < 0 ? w - 1 : int(floor_x);
-  const int x1 = x0 + 1 < w ? x0 + 1 : 0;
-  const int y0 = int(floor_y) < 0 ? 0 : int(floor_y);
-  const int y1 = int(floor_y) + 1 < h ? int(floor_y) + 1 : h - 1;
-  const float fx = x - floor_x;
-  const float fy = y - floor_y;
+  const float x = at.u * float(w) - 0.5F;
+  const float y = at.v * float(h) - 0.5F;
+  // Truncation is the floor of x + 1 > 0.
+  const int left = int(x + 1.0F) - 1;
+  const int top = int(y + 1.0F) - 1;
+  const int x0 = left < 0 ? w - 1 : left;
+  const int x1 = left + 1 < w ? left + 1 : 0;
+  const int y0 = top < 0 ? 0 : top;
+  const int y1 = top + 1 < h ? top + 1 : h - 1;
+  const float fx = x - float(left);
+  const float fy = y - float(top);
   const Rgb* row0 = radiance.data() + std::size_t(y0) * std::size_t(w);
   const Rgb* row1 = radiance.data() + std::size_t(y1) * std::size_t(w);
   return (row0[x0] * (1.0F - fx) + row0[x1] * fx) * (1.0F - fy) +
          (row1[x0] * (1.0F - fx) + row1[x1] * fx) * fy;
 }
 
-Vec3f sample_environment_map(const EnvironmentMap& map, Vec2f u) {
+float pdf_environment_map(const EnvironmentMap& map, MapPoint at) {
+  const std::size_t cell = std::size_t(cell_of(at.v, map.height_px)) * std::size_t(map.width_px) +
+                           std::size_t(cell_of(at.u, map.width_px));
+  return map.density[cell] / (kTwoPiSquared * at.sin_theta);
+}
+
+EnvironmentMapSample sample_environment_map(const EnvironmentMap& map, Vec2f u) {
   const CellSample row = sample_row(map.rows, 0, u.y);
   const CellSample column = sample_row(map.columns, row.cell, u.x);
   const Vec2f azimuth = unit_circle(column.position);
   const Vec2f polar = unit_circle(0.5F * row.position);
   const Vec3f horizontal = map.frame.x * azimuth.x + map.frame.y * azimuth.y;
-  return horizontal * polar.y + map.frame.z * polar.x;
-}
-
-float pdf_environment_map(const EnvironmentMap& map, Vec3f wi) {
-  const MapPoint p = map_point(map.frame, wi);
-  const std::size_t cell = std::size_t(cell_of(p.v, map.height_px)) * std::size_t(map.width_px) +
-                           std::size_t(cell_of(p.u, map.width_px));
-  return map.density[cell] / (kTwoPiSquared * p.sin_theta);
+  return {horizontal * polar.y + map.frame.z * polar.x,
+          {column.position, row.position, max_of(polar.y, 1e-7F)}};
 }
 
 Vec3f sample_sun(const SunDisc& sun, Vec2f u) {

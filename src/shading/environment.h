@@ -64,9 +64,22 @@ EnvironmentLight make_environment_light(const Environment& environment);
 EnvironmentMap make_environment_map(int width_px, int height_px, std::vector<Rgb> radiance,
                                     const MapFrame& frame);
 
-Rgb eval_environment_map(const EnvironmentMap& map, std::span<const Rgb> radiance, Vec3f wi);
-Vec3f sample_environment_map(const EnvironmentMap& map, Vec2f u);
-float pdf_environment_map(const EnvironmentMap& map, Vec3f wi);
+// A place on the map: both 0…1, v = 0 at the zenith.
+struct MapPoint {
+  float u = 0, v = 0;
+  float sin_theta = 1;  // of the angle from the zenith
+};
+MapPoint map_point(const EnvironmentMap& map, Vec3f wi);
+
+// radiance: the map's own or another of its size.
+Rgb eval_environment_map(const EnvironmentMap& map, std::span<const Rgb> radiance, MapPoint at);
+float pdf_environment_map(const EnvironmentMap& map, MapPoint at);
+
+struct EnvironmentMapSample {
+  Vec3f wi;
+  MapPoint at;
+};
+EnvironmentMapSample sample_environment_map(const EnvironmentMap& map, Vec2f u);
 
 Vec3f sample_sun(const SunDisc& sun, Vec2f u);
 inline bool is_in_sun(const SunDisc& sun, Vec3f wi) {

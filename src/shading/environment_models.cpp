@@ -1,5 +1,6 @@
 #include "shading/environment_models.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
@@ -129,34 +130,44 @@ struct Softbox {
   double radiance;
 };
 
-double softbox_radiance(const Softbox& box, Vec3d w) {
+// Its axes, each divided so that the box's edges are at 1.
+struct PlacedSoftbox {
+  Vec3d x, y, z;
+  double start, radiance;
+};
+
+PlacedSoftbox place(const Softbox& box) {
   const double azimuth = radians(box.azimuth_deg);
   const double elevation = radians(box.elevation_deg);
   const Vec3d z{std::cos(elevation) * std::cos(azimuth), std::cos(elevation) * std::sin(azimuth),
                 std::sin(elevation)};
-  const double depth = dot(w, z);
-  if (depth <= 0.0) {
+  const Vec3d x{-std::sin(azimuth), std::cos(azimuth), 0.0};
+  return {x / box.half_width, cross(z, x) / box.half_height, z, 1.0 - box.softness, box.radiance};
+}
+
+double softbox_radiance(const PlacedSoftbox& box, Vec3d w) {
+  const double depth = dot(w, box.z);
+  const double x = std::fabs(dot(w, box.x));
+  const double y = std::fabs(dot(w, box.y));
+  if (depth <= 0.0 || x >= depth || y >= depth) {
     return 0.0;
   }
-  const Vec3d x{-std::sin(azimuth), std::cos(azimuth), 0.0};
-  const double px = std::fabs(dot(w, x)) / (depth * box.half_width);
-  const double py = std::fabs(dot(w, cross(z, x))) / (depth * box.half_height);
-  const double start = 1.0 - box.softness;
-  return box.radiance * (1.0 - smoothstep(start, 1.0, px)) * (1.0 - smoothstep(start, 1.0, py));
+  return box.radiance * (1.0 - smoothstep(box.start, 1.0, x / depth)) *
+         (1.0 - smoothstep(box.start, 1.0, y / depth));
 }
 
 // Azimuths are those of a viewer at -60°, where the automatic camera stands.
 constexpr std::array<Softbox, 4> kSoftboxes = {{
-    {-125, 58, 0.75, 0.50, 0.35, 5.5},  // key
-    {15, 22, 0.45, 0.70, 0.60, 1.3},    // fill
-    {95, 30, 0.22, 0.60, 0.40, 4.0},    // rims
-    {165, 24, 0.18, 0.55, 0.40, 3.0},
+    {-125, 58, 0.70, 0.50, 0.35, 3.2},  // key
+    {15, 22, 0.45, 0.70, 0.60, 0.8},    // fill
+    {95, 30, 0.22, 0.60, 0.40, 2.6},    // rims
+    {165, 24, 0.18, 0.55, 0.40, 2.0},
 }};
 
 // The room: light above the horizon, a grey floor below.
 double room_radiance(Vec3d w) {
-  const double above = 0.55 + 0.20 * std::fabs(w.z);
-  const double below = 0.38;
+  const double above = 0.30 + 0.12 * std::fabs(w.z);
+  const double below = 0.22;
   return below + (above - below) * smoothstep(-0.35, 0.15, w.z);
 }
 
@@ -205,6 +216,8 @@ SkyModel make_sky_model(Vec3f towards_sun, double turbidity_given, double streng
 }
 
 StudioModel make_studio_model(double strength) {
+  std::array<PlacedSoftbox, kSoftboxes.size()> boxes{};
+  std::ranges::transform(kSoftboxes, boxes.begin(), place);
   StudioModel model;
   model.width_px = kStudioWidth;
   model.height_px = kStudioHeight;
@@ -215,7 +228,7 @@ StudioModel make_studio_model(double strength) {
     for (int x = 0; x < kStudioWidth; ++x) {
       const Vec3d w = direction_of_texel(x, y, kStudioWidth, kStudioHeight);
       double radiance = room_radiance(w);
-      for (const Softbox& box : kSoftboxes) {
+      for (const PlacedSoftbox& box : boxes) {
         radiance += softbox_radiance(box, w);
       }
       model.radiance.emplace_back(float(radiance * strength));

@@ -3,7 +3,10 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 
+#include "base/scalar.h"
+#include "base/sobol.h"
 #include "shading/fresnel.h"
 #include "shading/ggx.h"
 
@@ -15,6 +18,8 @@ constexpr int kRoughnesses = 32;
 constexpr int kGlassCosines = 16;
 constexpr int kGlassRoughnesses = 12;
 constexpr int kGlassEtas = 24;
+constexpr std::uint32_t kReflectionSamples = 256;
+constexpr std::uint32_t kGlassSamples = 256;
 // The glass table's axis is (eta - 1) / (eta + 1): eta from 1/3 to 3; an even count leaves eta = 1 out.
 constexpr float kGlassEtaRange = 0.5F;
 
@@ -31,51 +36,54 @@ Vec3f direction_of_cosine(float cosine) {
   return {std::sqrt(1.0F - cosine * cosine), 0.0F, cosine};
 }
 
-// Mean of f over the midpoints of a grid on the unit square.
-template <int kSide, class Result, class Function>
-Result mean_over_square(Result sum, const Function& f) {
-  for (int i = 0; i < kSide; ++i) {
-    for (int j = 0; j < kSide; ++j) {
-      f(Vec2f{(float(i) + 0.5F) / kSide, (float(j) + 0.5F) / kSide}, 1.0F / (kSide * kSide), sum);
-    }
-  }
-  return sum;
-}
-
 GgxAlbedo integrate_reflection(float cosine, float alpha) {
   const Vec3f wo = direction_of_cosine(cosine);
   const float slope_o = ggx_slope(alpha, wo.z);
-  return mean_over_square<16>(GgxAlbedo{0, 0}, [&](Vec2f u, float share, GgxAlbedo& sum) {
-    const Vec3f h = sample_ggx_normal(alpha, wo, u);
+  GgxAlbedo sum{0, 0};
+  for (std::uint32_t i = 0; i < kReflectionSamples; ++i) {
+    const Vec3f h = sample_ggx_normal(alpha, wo, Sampler(0, 0, 0, i).next_2d());
     const Vec3f wi = reflect(wo, h);
-    if (wi.z <= 0.0F) {
-      return;
+    if (wi.z > 0.0F) {
+      const float weight = ggx_shadowing(wo.z, slope_o, wi.z, ggx_slope(alpha, wi.z));
+      const float fresnel = schlick_weight(dot(wo, h));
+      sum.scale += weight * (1.0F - fresnel);
+      sum.bias += weight * fresnel;
     }
-    const float weight = share * ggx_shadowing(wo.z, slope_o, wi.z, ggx_slope(alpha, wi.z));
-    const float fresnel = schlick_weight(dot(wo, h));
-    sum.scale += weight * (1.0F - fresnel);
-    sum.bias += weight * fresnel;
-  });
+  }
+  return {sum.scale / float(kReflectionSamples), sum.bias / float(kReflectionSamples)};
 }
 
-float integrate_glass(float cosine, float alpha, float eta) {
+using GlassRow = std::array<float, kGlassEtas>;
+
+float eta_of_node(std::size_t node) {
+  const float x = kGlassEtaRange * (2.0F * float(node) / (kGlassEtas - 1) - 1.0F);
+  return (1.0F + x) / (1.0F - x);
+}
+
+// For all indices at once: they share the microfacets.
+GlassRow integrate_glass(float cosine, float alpha) {
   const Vec3f wo = direction_of_cosine(cosine);
   const float slope_o = ggx_slope(alpha, wo.z);
-  return mean_over_square<12>(0.0F, [&](Vec2f u, float share, float& sum) {
-    const Vec3f h = sample_ggx_normal(alpha, wo, u);
+  GlassRow sums{};
+  for (std::uint32_t i = 0; i < kGlassSamples; ++i) {
+    const Vec3f h = sample_ggx_normal(alpha, wo, Sampler(0, 0, 0, i).next_2d());
     const float cos_oh = dot(wo, h);
-    const Refraction refraction = fresnel_dielectric(cos_oh, eta);
     const Vec3f wr = reflect(wo, h);
-    if (wr.z > 0.0F) {
-      const float shadowing = ggx_shadowing(wo.z, slope_o, wr.z, ggx_slope(alpha, wr.z));
-      sum += share * refraction.reflectance * shadowing;
+    const float reflected =
+        wr.z > 0.0F ? ggx_shadowing(wo.z, slope_o, wr.z, ggx_slope(alpha, wr.z)) : 0.0F;
+    for (std::size_t e = 0; e < sums.size(); ++e) {
+      const float eta = eta_of_node(e);
+      const Refraction refraction = fresnel_dielectric(cos_oh, eta);
+      const float cos_t = -(h.z * (cos_oh / eta - refraction.cos_t) - wo.z / eta);
+      const float refracted =
+          cos_t > 0.0F ? ggx_shadowing(wo.z, slope_o, cos_t, ggx_slope(alpha, cos_t)) : 0.0F;
+      sums[e] += refracted + (reflected - refracted) * refraction.reflectance;
     }
-    const Vec3f wt = h * (cos_oh / eta - refraction.cos_t) - wo * (1.0F / eta);
-    if (wt.z < 0.0F) {
-      const float shadowing = ggx_shadowing(wo.z, slope_o, -wt.z, ggx_slope(alpha, -wt.z));
-      sum += share * (1.0F - refraction.reflectance) * shadowing;
-    }
-  });
+  }
+  for (float& sum : sums) {
+    sum /= float(kGlassSamples);
+  }
+  return sums;
 }
 
 using ReflectionTable = std::array<std::array<GgxAlbedo, kCosines>, kRoughnesses>;
@@ -95,13 +103,12 @@ ReflectionTable make_reflection_table() {
 
 GlassTable make_glass_table() {
   GlassTable table;
-  for (int e = 0; e < kGlassEtas; ++e) {
-    const float x = kGlassEtaRange * (2.0F * float(e) / (kGlassEtas - 1) - 1.0F);
-    const float eta = (1.0F + x) / (1.0F - x);
-    for (int r = 0; r < kGlassRoughnesses; ++r) {
-      for (int c = 0; c < kGlassCosines; ++c) {
-        table[std::size_t(e)][std::size_t(r)][std::size_t(c)] = integrate_glass(
-            cosine_of_node(c, kGlassCosines), alpha_of_node(r, kGlassRoughnesses), eta);
+  for (std::size_t r = 0; r < kGlassRoughnesses; ++r) {
+    for (std::size_t c = 0; c < kGlassCosines; ++c) {
+      const GlassRow row = integrate_glass(cosine_of_node(int(c), kGlassCosines),
+                                           alpha_of_node(int(r), kGlassRoughnesses));
+      for (std::size_t e = 0; e < kGlassEtas; ++e) {
+        table[e][r][c] = row[e];
       }
     }
   }

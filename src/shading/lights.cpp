@@ -173,8 +173,21 @@ std::optional<LightSample> sample_triangle(const TriangleEmitter& light, Vec3f p
 }
 
 // Map and sun are one integrand, drawn by a mixture: both count wherever they overlap.
-std::optional<LightSample> sample_far(const LightSet& lights, Vec3f wi) {
-  const EnvironmentValue value = eval_environment_with_pdf(lights, wi);
+EnvironmentValue eval_map_and_sun(const LightSet& lights, Vec3f wi, MapPoint at) {
+  const EnvironmentMap& map = lights.environment.map;
+  EnvironmentValue value{eval_environment_map(map, map.radiance, at),
+                         lights.environment_probability * pdf_environment_map(map, at)};
+  for (const SunDisc& sun : lights.environment.suns) {
+    if (is_in_sun(sun, wi)) {
+      value.radiance += sun.radiance;
+      value.pdf += lights.sun_probability / sun.solid_angle;
+    }
+  }
+  return value;
+}
+
+std::optional<LightSample> sample_far(const LightSet& lights, Vec3f wi, MapPoint at) {
+  const EnvironmentValue value = eval_map_and_sun(lights, wi, at);
   if (!(value.pdf > 0.0F)) {
     return std::nullopt;
   }
@@ -206,10 +219,14 @@ std::optional<LightSample> sample_emitter(const LightSet& lights, Emitter emitte
     }
     case EmitterKind::triangle:
       return sample_triangle(lights.triangles[emitter.index], point, u);
-    case EmitterKind::environment:
-      return sample_far(lights, sample_environment_map(lights.environment.map, u));
-    case EmitterKind::sun:
-      return sample_far(lights, sample_sun(lights.environment.suns.front(), u));
+    case EmitterKind::environment: {
+      const EnvironmentMapSample sample = sample_environment_map(lights.environment.map, u);
+      return sample_far(lights, sample.wi, sample.at);
+    }
+    case EmitterKind::sun: {
+      const Vec3f wi = sample_sun(lights.environment.suns.front(), u);
+      return sample_far(lights, wi, map_point(lights.environment.map, wi));
+    }
   }
   return std::nullopt;
 }
@@ -248,42 +265,26 @@ std::optional<LightSample> sample_light(const LightSet& lights, Vec3f point, flo
   return sample;
 }
 
-Rgb eval_environment(const LightSet& lights, Vec3f wi) {
+EnvironmentValue eval_environment_with_pdf(const LightSet& lights, Vec3f wi) {
   const EnvironmentLight& environment = lights.environment;
-  if (environment.kind == EnvironmentKind::constant) {
-    return environment.constant;
-  }
-  Rgb radiance = eval_environment_map(environment.map, environment.map.radiance, wi);
-  for (const SunDisc& sun : environment.suns) {
-    if (is_in_sun(sun, wi)) {
-      radiance += sun.radiance;
-    }
-  }
-  return radiance;
+  return environment.kind == EnvironmentKind::constant
+             ? EnvironmentValue{environment.constant, 0}
+             : eval_map_and_sun(lights, wi, map_point(environment.map, wi));
+}
+
+Rgb eval_environment(const LightSet& lights, Vec3f wi) {
+  return eval_environment_with_pdf(lights, wi).radiance;
 }
 
 float pdf_environment(const LightSet& lights, Vec3f wi) {
-  float pdf = 0;
-  if (lights.environment_probability > 0.0F) {
-    pdf = lights.environment_probability * pdf_environment_map(lights.environment.map, wi);
-  }
-  for (const SunDisc& sun : lights.environment.suns) {
-    if (is_in_sun(sun, wi)) {
-      pdf += lights.sun_probability / sun.solid_angle;
-    }
-  }
-  return pdf;
-}
-
-EnvironmentValue eval_environment_with_pdf(const LightSet& lights, Vec3f wi) {
-  return {eval_environment(lights, wi), pdf_environment(lights, wi)};
+  return eval_environment_with_pdf(lights, wi).pdf;
 }
 
 Rgb eval_backdrop(const LightSet& lights, Vec3f wi) {
   const EnvironmentLight& environment = lights.environment;
-  return environment.backdrop.empty()
-             ? eval_environment(lights, wi)
-             : eval_environment_map(environment.map, environment.backdrop, wi);
+  return environment.backdrop.empty() ? eval_environment(lights, wi)
+                                      : eval_environment_map(environment.map, environment.backdrop,
+                                                             map_point(environment.map, wi));
 }
 
 std::optional<AreaLightHit> find_area_light(const LightSet& lights, Vec3f origin, Vec3f dir,

@@ -105,7 +105,7 @@ struct LightSample {
   bool is_delta = false;
   EmitterKind kind = EmitterKind::point;
   std::uint32_t index = 0;  // within its kind: that of the EmissiveTriangle, or of the AreaLight
-  Vec2f barycentric{};        // of b and c, if kind is triangle: where to look up an emission texture
+  Vec2f barycentric{};      // of b and c, if kind is triangle: where to look up an emission texture
 };
 
 // Nothing if the emitter drawn sends no light to the point. u_select, u in [0, 1).
