@@ -182,13 +182,16 @@ std::optional<SurfacePoint> World::trace(const arris::Ray& ray,
     const unsigned id = query.hit.geomID;
     const arris::Rounding& rounding = *objects_[id].rounding;
     const arris::MeshHit hit{query.hit.primID, query.hit.u, query.hit.v, query.ray.tfar};
-    // 1. The hit is on the rounded solid: nothing else to do, as for most rays.
-    if (rounding.is_kept(hit.triangle, hit.u, hit.v)) {
-      return SurfacePoint{hit.t, rounding.face_normal(hit.triangle), id};
+    const Vec3d face_normal = rounding.face_normal(hit.triangle);
+    const bool entering = arris::dot(face_normal, ray.direction) < 0;
+    // 1. The hit is on the rounded solid: nothing else to do, as for most rays. (A ray that is met from
+    //    inside may have started between the sharp and the rounded edge, so it is always resolved.)
+    if (entering && rounding.is_kept(hit.triangle, hit.u, hit.v)) {
+      return SurfacePoint{hit.t, face_normal, id};
     }
     const arris::Resolution resolution = rounding.resolve(ray, hit);
     if (resolution.outcome == arris::Resolution::Outcome::kept) {
-      return SurfacePoint{hit.t, rounding.face_normal(hit.triangle), id};
+      return SurfacePoint{hit.t, face_normal, id};
     }
     // 2. The surface is further in, on an edge's cylinder or a corner's sphere: another solid that
     //    reaches in there may still be nearer.
