@@ -9,6 +9,7 @@
 #include "io/gltf_document.h"
 #include "io/gltf_material.h"
 #include "io/gltf_mesh.h"
+#include "io/mesh_scene.h"
 
 namespace arris {
 namespace {
@@ -82,7 +83,7 @@ class SceneBuilder {
   }
 
   Scene build() {
-    scene_.name = where_;
+    scene_.name = name_from_file(where_);
     scene_.up = {0, 1, 0};
     scene_.rounding = document_.rounding;
     mesh_ids_.resize(meshes_.size());

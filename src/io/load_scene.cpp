@@ -13,6 +13,7 @@
 #include "io/gltf_buffers.h"
 #include "io/gltf_reader.h"
 #include "io/mesh_readers.h"
+#include "io/toml_scene.h"
 
 namespace arris {
 namespace {
@@ -44,6 +45,12 @@ constexpr Format kFormats[] = {
      [](const SceneFile& f) { return read_gltf(f.bytes, f.name, f.path.parent_path()); }, is_glb},
     {".gltf", "glTF",
      [](const SceneFile& f) { return read_gltf(f.bytes, f.name, f.path.parent_path()); }, nullptr},
+    {".toml", "TOML",
+     [](const SceneFile& f) {
+       const std::string_view text(reinterpret_cast<const char*>(f.bytes.data()), f.bytes.size());
+       return read_toml_scene(text, f.name, f.path.parent_path(), load_scene);
+     },
+     nullptr},
 };
 
 std::string lower(std::string text) {

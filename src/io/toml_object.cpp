@@ -1,0 +1,264 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "arris/error.h"
+#include "base/nearest_name.h"
+#include "base/utf8_text.h"
+#include "io/mesh_scene.h"
+#include "io/toml_scene_parts.h"
+#include "io/toml_shape.h"
+
+namespace arris {
+namespace {
+
+// Of all shapes of a scene file together: a short file must not fill the memory.
+constexpr std::size_t kMaxShapeTriangles = std::size_t(1) << 24;
+
+Mat3d rotation_matrix(Vec3d deg) {
+  const auto about = [](double angle_deg, auto make) {
+    return make(std::cos(radians(angle_deg)), std::sin(radians(angle_deg)));
+  };
+  const Mat3d x = about(deg.x, [](double c, double s) {
+    return Mat3d{{1, 0, 0}, {0, c, s}, {0, -s, c}};
+  });
+  const Mat3d y = about(deg.y, [](double c, double s) {
+    return Mat3d{{c, 0, -s}, {0, 1, 0}, {s, 0, c}};
+  });
+  const Mat3d z = about(deg.z, [](double c, double s) {
+    return Mat3d{{c, s, 0}, {-s, c, 0}, {0, 0, 1}};
+  });
+  return z * y * x;
+}
+
+bool is_invertible(const Mat3d& m) {
+  const double scale = std::max({length(m.x), length(m.y), length(m.z)});
+  return std::abs(determinant(m)) > 1e-15 * scale * scale * scale;
+}
+
+// 4 rows of 4 numbers.
+std::optional<Affine3d> parse_matrix(TomlTableReader& reader) {
+  const TomlMember* member = reader.find("matrix");
+  const auto* rows = std::get_if<TomlArray>(&member->value.data);
+  if (rows == nullptr || rows->size() != 4) {
+    reader.report("matrix", "must be 4 rows of 4 numbers");
+    return std::nullopt;
+  }
+  std::vector<std::vector<double>> m;
+  for (const TomlValue& row : *rows) {
+    if (auto numbers = reader.numbers_of(row, "matrix", 4, kTomlCoordinate)) m.push_back(*numbers);
+  }
+  if (m.size() != 4) return std::nullopt;
+  if (m[3] != std::vector<double>{0, 0, 0, 1}) {
+    reader.report("matrix", "the last row must be [0, 0, 0, 1]");
+    return std::nullopt;
+  }
+  const auto column = [&](std::size_t i) { return Vec3d(m[0][i], m[1][i], m[2][i]); };
+  return Affine3d{{column(0), column(1), column(2)}, column(3)};
+}
+
+Affine3d parse_transform(TomlTableReader& reader) {
+  const bool has_parts = reader.has("translate") || reader.has("rotate") || reader.has("scale");
+  const Vec3d translate = reader.vec3("translate", kTomlCoordinate).value_or(Vec3d(0.0));
+  const Vec3d rotate = reader.vec3("rotate", {-1e6, 1e6}).value_or(Vec3d(0.0));
+  Vec3d scale(1.0);
+  if (const TomlMember* member = reader.find("scale")) {
+    scale = std::holds_alternative<TomlArray>(member->value.data)
+                ? reader.vec3("scale", kTomlCoordinate).value_or(scale)
+                : Vec3d(reader.number("scale", kTomlCoordinate).value_or(1));
+  }
+  Mat3d linear = rotation_matrix(rotate);
+  linear = {linear.x * scale.x, linear.y * scale.y, linear.z * scale.z};
+  Affine3d transform{linear, translate};
+  if (reader.has("matrix")) {
+    if (has_parts) reader.report("matrix", "give it alone, or translate, rotate and scale");
+    transform = parse_matrix(reader).value_or(Affine3d{});
+  }
+  if (!is_invertible(transform.linear)) {
+    reader.report(reader.has("matrix") ? "matrix" : "scale",
+                  "flattens the object; use a scale other than 0");
+  }
+  return transform;
+}
+
+template <class Tag>
+void shift(Id<Tag>& id, std::size_t by) {
+  id.index += std::uint32_t(by);
+}
+
+void shift_textures(Material& material, std::size_t by) {
+  for (std::optional<TextureId>* texture :
+       {&material.base_color_texture, &material.metallic_roughness_texture,
+        &material.emission_texture, &material.normal_texture, &material.transmission_texture,
+        &material.clearcoat_texture, &material.clearcoat_roughness_texture}) {
+    if (*texture) shift(**texture, by);
+  }
+}
+
+template <class T>
+void move_onto(std::vector<T>& from, std::vector<T>& to) {
+  to.insert(to.end(), std::make_move_iterator(from.begin()), std::make_move_iterator(from.end()));
+}
+
+}  // namespace
+
+void TomlObjects::parse(const TomlValue& value, std::size_t number) {
+  const auto* table = std::get_if<TomlTable>(&value.data);
+  if (table == nullptr) {
+    context_.problems.add(value.place,
+                          fmt::format("object {}: must be a table, written [[object]]", number));
+    return;
+  }
+  const auto name = std::ranges::find(*table, "name", &TomlMember::key);
+  const auto* text = name == table->end() ? nullptr : std::get_if<std::string>(&name->value.data);
+  TomlTableReader reader(
+      *table, value.place,
+      text != nullptr ? "object " + in_quotes(*text) : fmt::format("object {}", number),
+      context_.problems);
+  const Placement placement = parse_placement(reader);
+  if (reader.has("file") == reader.has("shape")) {
+    reader.report("file", "give either \"file\" or \"shape\"");
+  } else if (reader.has("file")) {
+    add_file(reader, placement);
+  } else {
+    add_shape(reader, placement);
+  }
+  if (reader.has("file") || reader.has("shape")) reader.report_unknown();
+}
+
+TomlObjects::Placement TomlObjects::parse_placement(TomlTableReader& reader) {
+  Placement placement;
+  placement.name = reader.string("name").value_or("");
+  if (const auto material = reader.string("material")) {
+    placement.material = materials_.find(*material);
+    if (!placement.material) {
+      reader.report("material",
+                    fmt::format("there is no [material.…] named {}{}", in_quotes(*material),
+                                did_you_mean(*material, materials_.names())));
+    }
+  }
+  placement.world_from_object = parse_transform(reader);
+  if (const TomlMember* round = reader.find("round")) {
+    RoundingSettings defaults;
+    defaults.method = RoundMethod::exact;
+    if (context_.scene.rounding) defaults = *context_.scene.rounding;
+    placement.rounding = parse_toml_rounding(*round, defaults, context_.problems);
+  }
+  return placement;
+}
+
+bool TomlObjects::has_room(std::size_t objects, TomlTableReader& reader, const char* key) {
+  if (context_.scene.objects.size() + objects <= kMaxObjects) return true;
+  reader.report(key, fmt::format("the scene has more than {} objects", kMaxObjects));
+  return false;
+}
+
+void TomlObjects::add_shape(TomlTableReader& reader, const Placement& placement) {
+  std::optional<TomlShape> shape = parse_toml_shape(reader);
+  if (!shape || !has_room(1, reader, "shape")) return;
+  const auto [entry, is_new] =
+      shapes_.try_emplace(shape->key, MeshId{std::uint32_t(context_.scene.meshes.size())});
+  Object object;
+  object.name = placement.name.empty() ? shape->mesh.name : placement.name;
+  if (is_new) {
+    shape_triangles_ += shape->mesh.triangles.size();
+    if (shape_triangles_ > kMaxShapeTriangles) {
+      reader.report("shape",
+                    fmt::format("the scene's shapes have more than {} triangles; use fewer "
+                                "segments or equal shapes",
+                                kMaxShapeTriangles));
+      shape->mesh = {};
+    }
+    context_.scene.meshes.push_back(std::move(shape->mesh));
+  }
+  object.mesh = entry->second;
+  object.material = placement.material.value_or(MaterialId{0});
+  object.world_from_object = placement.world_from_object;
+  object.rounding = placement.rounding;
+  context_.scene.objects.push_back(std::move(object));
+}
+
+void TomlObjects::add_file(TomlTableReader& reader, const Placement& placement) {
+  const std::optional<std::string> file = reader.string("file");
+  if (!file) return;
+  const Model* model = find_or_load(*file, reader);
+  if (model == nullptr || !has_room(model->objects.size(), reader, "file")) return;
+  const std::string prefix = placement.name.empty() ? model->stem : placement.name;
+  for (Object object : model->objects) {
+    if (model->objects.size() > 1) {
+      object.name = prefix + "/" + object.name;
+    } else if (!placement.name.empty()) {
+      object.name = placement.name;
+    }
+    if (placement.material) {
+      object.material = *placement.material;
+      object.mesh = without_materials(object.mesh);
+    }
+    if (placement.rounding) object.rounding = placement.rounding;
+    object.world_from_object = placement.world_from_object * object.world_from_object;
+    context_.scene.objects.push_back(std::move(object));
+  }
+}
+
+const TomlObjects::Model* TomlObjects::find_or_load(const std::string& file,
+                                                    TomlTableReader& reader) {
+  const std::filesystem::path path = context_.resolve(file).lexically_normal();
+  const auto [entry, is_new] = models_.try_emplace(path.string());
+  std::optional<Model>& model = entry->second;
+  if (is_new) {
+    std::string extension = path.extension().string();
+    std::ranges::transform(extension, extension.begin(),
+                           [](char c) { return c >= 'A' && c <= 'Z' ? char(c + ('a' - 'A')) : c; });
+    if (extension == ".toml") {
+      reader.report("file", "scene files can't hold other scene files; name a model file");
+      return nullptr;
+    }
+    try {
+      model = append(context_.load_model(path), path);
+    } catch (const Error& error) {
+      reader.report("file", error.what());
+    }
+  }
+  return model ? &*model : nullptr;
+}
+
+// The model's parts become the scene's. Its lights, camera and environment stay behind.
+TomlObjects::Model TomlObjects::append(Scene model, const std::filesystem::path& path) {
+  Scene& scene = context_.scene;
+  const std::size_t meshes = scene.meshes.size(), materials = scene.materials.size();
+  for (Material& material : model.materials) shift_textures(material, scene.textures.size());
+  for (Mesh& mesh : model.meshes) {
+    for (MaterialId& material : mesh.triangle_materials) shift(material, materials);
+  }
+  for (Object& object : model.objects) {
+    shift(object.mesh, meshes);
+    shift(object.material, materials);
+    if (!object.rounding) object.rounding = model.rounding;
+  }
+  for (const std::string& note : model.notes) {
+    scene.notes.push_back(path.filename().string() + ": " + note);
+  }
+  if (!model.lights.empty() || model.camera) {
+    scene.notes.push_back(path.filename().string() + ": its lights and cameras are left out");
+  }
+  move_onto(model.meshes, scene.meshes);
+  move_onto(model.materials, scene.materials);
+  move_onto(model.textures, scene.textures);
+  return {std::move(model.objects), name_from_file(path.string())};
+}
+
+// An object's own material goes before those of its triangles: it needs a mesh without them.
+MeshId TomlObjects::without_materials(MeshId id) {
+  Scene& scene = context_.scene;
+  if (scene.meshes[id.index].triangle_materials.empty()) return id;
+  const auto [entry, is_new] = plain_.try_emplace(id, MeshId{std::uint32_t(scene.meshes.size())});
+  if (is_new) {
+    Mesh copy = scene.meshes[id.index];
+    copy.triangle_materials.clear();
+    scene.meshes.push_back(std::move(copy));
+  }
+  return entry->second;
+}
+
+}  // namespace arris

@@ -1,0 +1,154 @@
+#include "io/toml_scene.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+
+#include "io/mesh_scene.h"
+#include "io/toml_scene_parts.h"
+
+namespace arris {
+namespace {
+
+using Filter = ImageSettings::Filter;
+constexpr std::array<TomlWord<Filter>, 4> kFilters = {
+    {{"box", Filter::box},
+     {"tent", Filter::tent},
+     {"gaussian", Filter::gaussian},
+     {"blackman_harris", Filter::blackman_harris}}};
+
+ImageSettings parse_image(const TomlMember& member, TomlProblems& problems) {
+  ImageSettings image;
+  const TomlTable* table = as_toml_table(member, problems);
+  if (table == nullptr) return image;
+  TomlTableReader reader(*table, member.value.place, "[image]", problems);
+  if (const auto size = reader.vec2("size", {1, 65536})) {
+    if (size->x != std::floor(size->x) || size->y != std::floor(size->y)) {
+      reader.report("size", "must be whole numbers of pixels");
+    }
+    image.width_px = int(size->x);
+    image.height_px = int(size->y);
+  }
+  image.samples_per_pixel = reader.integer("samples", 1, 1 << 24).value_or(image.samples_per_pixel);
+  image.max_depth = reader.integer("max_depth", 0, 1024).value_or(image.max_depth);
+  image.exposure = reader.number("exposure", {-64, 64}).value_or(image.exposure);
+  image.filter = reader.word<Filter>("filter", kFilters).value_or(image.filter);
+  reader.report_unknown();
+  return image;
+}
+
+std::optional<Camera> parse_camera(const TomlMember& member, Vec3d up, TomlProblems& problems) {
+  const TomlTable* table = as_toml_table(member, problems);
+  if (table == nullptr) return std::nullopt;
+  TomlTableReader reader(*table, member.value.place, "[camera]", problems);
+  Camera camera;
+  if (!reader.has("position")) reader.report_missing("position");
+  const auto position = reader.vec3("position", kTomlCoordinate);
+  camera.position = position.value_or(camera.position);
+  camera.target = reader.vec3("target", kTomlCoordinate).value_or(camera.target);
+  camera.up = reader.direction("up").value_or(up);
+  camera.fov_deg = reader.number("fov", {0.1, 178}).value_or(camera.fov_deg);
+  const Vec3d view = camera.target - camera.position;
+  if (position && !(length_squared(view) > 0)) {
+    reader.report("position", "is the target; move one of them");
+  } else if (position && !(length(cross(normalize(view), normalize(camera.up))) > 1e-9)) {
+    reader.report("up", "is along the view; choose another");
+  }
+  reader.report_unknown();
+  return camera;
+}
+
+// The elements of an array of tables; a report if it is something else.
+const TomlArray& elements_of(const TomlMember& member, TomlProblems& problems) {
+  static const TomlArray kNone;
+  if (const auto* array = std::get_if<TomlArray>(&member.value.data)) return *array;
+  problems.add(member.place, fmt::format("{}: must be an array of tables, written [[{}]]",
+                                         member.key, member.key));
+  return kNone;
+}
+
+class SceneParser {
+ public:
+  SceneParser(const TomlTable& root, const TomlSceneContext& context)
+      : reader_(root, {}, "", context.problems), context_(context) {}
+
+  // In the order in which the parts need each other.
+  void parse() {
+    Scene& scene = context_.scene;
+    TomlProblems& problems = context_.problems;
+    if (const auto up = reader_.direction("up")) scene.up = normalize(*up);
+    if (const auto* image = reader_.find("image")) scene.image = parse_image(*image, problems);
+    if (const auto* camera = reader_.find("camera")) {
+      scene.camera = parse_camera(*camera, scene.up, problems);
+    }
+    if (const auto* environment = reader_.find("environment")) {
+      scene.environment = parse_toml_environment(*environment, context_);
+    }
+    parse_lights();
+    if (const auto* round = reader_.find("round")) {
+      RoundingSettings defaults;
+      defaults.method = RoundMethod::exact;
+      scene.rounding = parse_toml_rounding(*round, defaults, problems);
+    }
+    TomlMaterials materials(context_);
+    if (const auto* material = reader_.find("material")) materials.parse(*material);
+    parse_objects(materials);
+    reader_.report_unknown();
+  }
+
+ private:
+  void parse_lights() {
+    const TomlMember* lights = reader_.find("light");
+    if (lights == nullptr) return;
+    std::size_t number = 0;
+    for (const TomlValue& value : elements_of(*lights, context_.problems)) {
+      if (auto light = parse_toml_light(value, ++number, context_)) {
+        context_.scene.lights.push_back(*light);
+      }
+    }
+  }
+
+  void parse_objects(const TomlMaterials& materials) {
+    const TomlMember* objects = reader_.find("object");
+    if (objects == nullptr) {
+      context_.problems.add({}, "the scene has no object; add an [[object]]");
+      return;
+    }
+    TomlObjects parser(context_, materials);
+    std::size_t number = 0;
+    for (const TomlValue& value : elements_of(*objects, context_.problems)) {
+      parser.parse(value, ++number);
+    }
+    if (context_.problems.empty() && context_.scene.objects.empty()) {
+      context_.problems.add(objects->place, "the scene has no object; add an [[object]]");
+    }
+  }
+
+  TomlTableReader reader_;
+  const TomlSceneContext& context_;
+};
+
+}  // namespace
+
+const TomlTable* as_toml_table(const TomlMember& member, TomlProblems& problems) {
+  if (const auto* table = std::get_if<TomlTable>(&member.value.data)) return table;
+  problems.add(member.place,
+               fmt::format("{}: must be a table, written [{}]", member.key, member.key));
+  return nullptr;
+}
+
+Scene read_toml_scene(std::string_view text, const std::string& name,
+                      const std::filesystem::path& base_directory, const LoadModel& load_model) {
+  const TomlTable root = parse_toml(text, name);
+  Scene scene;
+  scene.name = name_from_file(name);
+  scene.materials.emplace_back().name = "default";
+  TomlProblems problems(name);
+  const TomlSceneContext context{scene, problems, base_directory, load_model};
+  SceneParser(root, context).parse();
+  problems.throw_if_any();
+  return scene;
+}
+
+}  // namespace arris

@@ -1,0 +1,99 @@
+// toml_scene_parts.h — the pieces of read_toml_scene()
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <string>
+#include <tuple>
+#include <vector>
+
+#include "io/toml_document.h"
+#include "io/toml_scene.h"
+
+namespace arris {
+
+// What all pieces work on.
+struct TomlSceneContext {
+  Scene& scene;
+  TomlProblems& problems;
+  const std::filesystem::path& base_directory;
+  const LoadModel& load_model;
+
+  // A file name of the scene file as a path.
+  [[nodiscard]] std::filesystem::path resolve(const std::string& file) const {
+    return base_directory / std::filesystem::path(file);
+  }
+};
+
+// The table, or nothing and a report if the value is no table.
+const TomlTable* as_toml_table(const TomlMember& member, TomlProblems& problems);
+
+// Rounding as a table, a number or a text like "12%"; what the table leaves out comes from `defaults`.
+std::optional<RoundingSettings> parse_toml_rounding(const TomlMember& member,
+                                                    const RoundingSettings& defaults,
+                                                    TomlProblems& problems);
+
+// [material.…]: fills scene.materials; number 0 is "default".
+class TomlMaterials {
+ public:
+  explicit TomlMaterials(const TomlSceneContext& context) : context_(context) {}
+
+  void parse(const TomlMember& member);
+  [[nodiscard]] std::optional<MaterialId> find(const std::string& name) const;
+  // All names, for "did you mean".
+  [[nodiscard]] std::vector<std::string> names() const;
+
+ private:
+  void parse_one(const TomlMember& member);
+  void parse_textures(TomlTableReader& reader, Material& material);
+  std::optional<TextureId> find_or_load(const std::string& file, bool srgb, Texture::Wrap wrap_u,
+                                        Texture::Wrap wrap_v, TomlPlace place);
+
+  const TomlSceneContext& context_;
+  std::map<std::string, MaterialId> ids_{{"default", MaterialId{0}}};
+  std::map<std::tuple<std::string, bool, Texture::Wrap, Texture::Wrap>, TextureId> textures_;
+};
+
+std::optional<Light> parse_toml_light(const TomlValue& value, std::size_t number,
+                                      const TomlSceneContext& context);
+std::optional<Environment> parse_toml_environment(const TomlMember& member,
+                                                  const TomlSceneContext& context);
+
+// [[object]]: meshes of shapes and files are made once, whatever the number of objects.
+class TomlObjects {
+ public:
+  TomlObjects(const TomlSceneContext& context, const TomlMaterials& materials)
+      : context_(context), materials_(materials) {}
+
+  void parse(const TomlValue& value, std::size_t number);
+
+ private:
+  struct Placement {
+    std::string name;  // empty: not given
+    std::optional<MaterialId> material;
+    std::optional<RoundingSettings> rounding;
+    Affine3d world_from_object;
+  };
+  struct Model {
+    std::vector<Object> objects;  // ids are the scene's
+    std::string stem;
+  };
+
+  Placement parse_placement(TomlTableReader& reader);
+  void add_shape(TomlTableReader& reader, const Placement& placement);
+  void add_file(TomlTableReader& reader, const Placement& placement);
+  const Model* find_or_load(const std::string& file, TomlTableReader& reader);
+  Model append(Scene model, const std::filesystem::path& path);
+  MeshId without_materials(MeshId mesh);
+  bool has_room(std::size_t objects, TomlTableReader& reader, const char* key);
+
+  const TomlSceneContext& context_;
+  const TomlMaterials& materials_;
+  std::map<std::string, std::optional<Model>> models_;  // empty: could not be loaded
+  std::map<std::string, MeshId> shapes_;                // by their parameters
+  std::map<MeshId, MeshId> plain_;                      // copies without triangle materials
+  std::size_t shape_triangles_ = 0;
+};
+
+}  // namespace arris
