@@ -5,7 +5,6 @@ dice.stl          the six polyhedral dice, each resting on a face; 3, 4 or 5 fac
 keypad.obj        a numeric keypad in millimetres, with materials (keypad.mtl)
 arch.obj          a stone arch; its 20 stones touch face to face
 cornell_room.obj  the air of a room as a solid, seen from inside, with two boxes (cornell_room.mtl)
-icosphere.obj     a sphere of 80 triangles
 """
 
 import math
@@ -293,7 +292,7 @@ def arch():
 
 
 def cornell_room():
-    """Half-metre units: the room is 2 × 2 × 2 about the origin, open nowhere."""
+    """A closed box about the origin, two wide and high, with two boxes on its floor."""
 
     def turned(solid, centre, angle_deg):
         c, s = math.cos(math.radians(angle_deg)), math.sin(math.radians(angle_deg))
@@ -320,15 +319,6 @@ CORNELL_MATERIALS = {
 }
 
 
-def icosphere():
-    points = {tuple(round(x, 9) for x in unit(p)) for p in icosahedron()}
-    edge = min(math.dist(a, b) for a, b in combinations(points, 2))
-    for a, b in combinations(sorted(points), 2):
-        if math.dist(a, b) < 1.1 * edge:
-            points.add(tuple(round(x, 9) for x in unit([x + y for x, y in zip(a, b)])))
-    return [Solid("icosphere", sorted(points))]
-
-
 def main():
     write_stl(FOLDER / "dice.stl", dice())
     write_obj(FOLDER / "keypad.obj", keypad(), "a numeric keypad, millimetres, z up")
@@ -336,7 +326,6 @@ def main():
     write_obj(FOLDER / "arch.obj", arch(), "a stone arch, z up; the stones touch")
     write_obj(FOLDER / "cornell_room.obj", cornell_room(), "the air of a room, z up", wall_material)
     write_mtl(FOLDER / "cornell_room.mtl", CORNELL_MATERIALS)
-    write_obj(FOLDER / "icosphere.obj", icosphere(), "80 triangles on the unit sphere")
 
 
 if __name__ == "__main__":
