@@ -1,6 +1,5 @@
 // hash.h — mixing integers into well distributed bits
-// Source     hash_bits(): finaliser with the constants of C. Wellons, "Prospecting for Hash
-// Functions" (2018)
+// Source     the constants: C. Wellons, "Prospecting for Hash Functions" (2018)
 #pragma once
 
 #include <cstdint>

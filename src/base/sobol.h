@@ -1,21 +1,19 @@
 // sobol.h — Owen-scrambled Sobol points for one sample of one pixel
-// What       a Sampler hands out the numbers of sample `sample` of pixel (x, y), pair after pair.
-// Every
-//            pair (or single) is the two-dimensional Sobol sequence, padded: shuffled by a nested
-//            uniform scramble of its index and Owen-scrambled, with hashes of (seed, x, y,
-//            dimension) for seeds.
+// What       a Sampler hands out the numbers of sample `sample` of pixel (x, y), one dimension after
+//            another. Every pair is the two-dimensional Sobol sequence, padded: shuffled by a nested
+//            uniform scramble of its index and Owen-scrambled, with hashes of (seed, x, y, dimension)
+//            for seeds. A single number is the van der Corput sequence, shuffled and shifted digitally.
 // Out        floats in [0, 1), multiples of 2^-24
-// Guarantee  a sample's numbers depend on (seed, x, y, sample) and the dimension alone, so ranges
-// A..B are
-//            exact parts of one sequence. The first 2^k samples of a pixel put one point into each
-//            of the 2^k intervals (1D), and into each elementary rectangle of area 2^-k (2D)
-//            (tests/base/sobol_test.cpp).
-// Limits     pairs are independent of each other: no stratification across dimensions beyond two
+// Guarantee  a sample's numbers depend on (seed, x, y, sample) and the dimension alone, so ranges A..B
+//            are exact parts of one sequence. The first 2^k samples of a pixel put one point into each
+//            of the 2^k intervals (1D), and into each elementary rectangle of area 2^-k (2D); so does
+//            every aligned block of 2^k (tests/base/sobol_test.cpp).
+// Limits     dimensions are independent of each other: no stratification across more than a pair
 // Cost       about 2 ns for a number, 8 ns for a pair; 12 bytes of state
 // Source     B. Burley, "Practical Hash-based Owen Scrambling", JCGT 9(4), 2020;
 //            the hash: N. Vegdahl, "Building a Better LK Hash" (2021);
-//            the second dimension's matrix in five steps: A. Ahmed, "An Implementation Algorithm of
-//            2D Sobol Sequence" (2024)
+//            the second dimension's matrix in five steps: A. Ahmed, "An Implementation Algorithm of 2D
+//            Sobol Sequence" (2024)
 #pragma once
 
 #include <cstdint>
@@ -39,8 +37,7 @@ constexpr std::uint64_t reverse_bits(std::uint64_t x) {
   return __builtin_bswap64(x);
 }
 
-// Owen scrambling of a number whose bits are reversed: each bit is flipped by a hash of those below
-// it.
+// Owen scrambling of a number whose bits are reversed: a hash of the bits below flips each.
 constexpr std::uint32_t scramble_reversed(std::uint32_t x, std::uint32_t seed) {
   x ^= x * 0x3d20adeaU;
   x += seed;

@@ -1,29 +1,23 @@
 // bsdf.h — how a surface scatters light: a sum of at most four lobes
-// What       make_bsdf() turns the material at a point into lobes for one wo; eval_bsdf(),
-// pdf_bsdf() and
-//            sample_bsdf() belong together.
+// What       make_bsdf() turns the material at a point into lobes for one wo; eval_bsdf(), pdf_bsdf()
+//            and sample_bsdf() belong together.
 //            diffuse   Lambert
-//            specular  GGX reflection of the dielectric's and the metal's surface, Schlick's
-//            Fresnel glass     GGX reflection and refraction of the transmitting share, exact
-//            Fresnel coat      GGX reflection of the clearcoat, F0 = 0.04, above all others
+//            specular  GGX reflection of the dielectric's and the metal's surface, Schlick's Fresnel
+//            glass     GGX reflection and refraction of the transmitting share, exact Fresnel
+//            coat      GGX reflection of the clearcoat, F0 = 0.04, above all others
 // In / Out   local frame: z = shading normal on wo's side; wo and wi unit, away from the surface.
-// wi.z < 0
-//            is beyond the surface. eval returns f·|cos_i|; pdfs are per solid angle of wi.
-// Guarantee  integrates to at most 1.01 over wi for every material, and to within 2 % of 1 for
-// white ones
-//            (tests/shading/furnace_test.cpp): the layers below a reflecting one get what it leaves
-//            at wo (albedo scaling), and what GGX loses to single scattering is scaled back
-//            (Turquin). Both make f depend on wo more than on wi: reciprocity holds only for glossy
-//            mixes and metals of F0 = 0.
+//            wi.z < 0 is beyond the surface. eval returns f·|cos_i|; pdfs are per solid angle of wi.
+// Guarantee  integrates over wi to at most 1.01 for every material, and to at least 0.98 for white ones
+//            (0.96 where cos_o < 0.04) but for glossy mixes, which scatter once
+//            (tests/shading/furnace_test.cpp). The layers below a reflecting one get what it leaves at
+//            wo (albedo scaling); what GGX loses to single scattering is scaled back (Turquin). Both
+//            look at wo alone, so only glossy mixes are reciprocal.
 // Limits     alpha = roughness² below kMinAlpha is a delta lobe: eval and pdf leave it out, sample
-//            returns it with is_delta. Light is carried as L/n²: the factor eta² of refracted
-//            radiance is left out; it cancels on every path that ends in the medium it began in.
-//            The transmission colour is split over the two interfaces of a solid: sqrt(base_color)
-//            at each.
-// Source     glTF 2.0 appendix B, KHR_materials_{ior,specular,transmission,clearcoat}; B. Walter et
-// al.
-//            2007; E. Turquin, "Practical multiple scattering compensation for microfacet models"
-//            (2019)
+//            returns it with is_delta. Light is carried as L/n²: the factor eta² of refracted radiance
+//            is left out; it cancels on every path that ends in the medium it began in. The
+//            transmission colour is split over a solid's two interfaces: sqrt(base_color) at each.
+// Source     glTF 2.0 appendix B, KHR_materials_{ior,specular,transmission,clearcoat}; B. Walter et al.
+//            2007; E. Turquin, "Practical multiple scattering compensation for microfacet models" (2019)
 #pragma once
 
 #include <optional>
@@ -164,8 +158,7 @@ inline bool is_delta_only(const Bsdf& bsdf) {
          (bsdf.share_coat == 0.0F || bsdf.coat_alpha == 0.0F);
 }
 
-// u_lobe selects, u samples; all in [0, 1). Nothing if the sample is below a horizon or the surface
-// black.
+// u_lobe selects, u samples; all in [0, 1). Nothing if the sample is absorbed or the surface black.
 std::optional<BsdfSample> sample_bsdf(const Bsdf& bsdf, float u_lobe, Vec2f u);
 
 }  // namespace arris

@@ -1,12 +1,11 @@
 // environment.h — light from infinitely far: constant, sky, HDR map, studio
 // What       all but the constant one are brought into one form: an equirectangular map of radiance
-// with a
-//            piecewise constant density, and for the sky a sun disc as an emitter of its own.
+//            with a piecewise constant density, and for the sky a sun disc as an emitter of its own
 // In / Out   world directions, unit, towards the environment; pdfs per solid angle
 // Guarantee  wherever the map has radiance its density is positive
-// (tests/shading/environment_test.cpp) Cost       sampling: two guided table searches, about three
-// comparisons each; evaluation: one bilinear
-//            lookup
+//            (tests/shading/environment_test.cpp)
+// Cost       sampling: two guided table searches, about three comparisons each; evaluation: one
+//            bilinear lookup
 #pragma once
 
 #include <cstdint>

@@ -1,15 +1,13 @@
 // ggx.h — the isotropic GGX microfacet distribution with Smith's height-correlated masking
 // In / Out   local frame, z = normal; unit vectors away from the surface; alpha = roughness²
-// Legend     alpha  width of the slope distribution; the lobes' callers keep it at or above
-// kMinAlpha
+// Legend     alpha  width of the slope distribution; callers keep it at or above kMinAlpha
 //            h      microfacet normal, h.z > 0
 //            D      density of microfacet normals per solid angle, ∫ D cosθ = 1
 //            S(w)   sqrt(alpha² + (1 - alpha²) cos²θ): 1 + 2Λ(w) = S / cosθ
-// Source     B. Walter et al., "Microfacet Models for Refraction through Rough Surfaces", EGSR
-// 2007;
+// Source     B. Walter et al., "Microfacet Models for Refraction through Rough Surfaces", EGSR 2007;
 //            E. Heitz, "Understanding the Masking-Shadowing Function", JCGT 3(2), 2014, eq. 99;
-//            visible normals: J. Dupuy, A. Benyoub, "Sampling Visible GGX Normals with Spherical
-//            Caps", HPG 2023
+//            visible normals: J. Dupuy, A. Benyoub, "Sampling Visible GGX Normals with Spherical Caps",
+//            HPG 2023
 #pragma once
 
 #include <cmath>
@@ -20,8 +18,7 @@
 
 namespace arris {
 
-// Smoother surfaces are perfect mirrors (delta lobes): D's peak 1/(π alpha²) stays well inside
-// float.
+// Smoother surfaces are perfect mirrors (delta lobes), so that D's peak 1/(π alpha²) stays inside float.
 inline constexpr float kMinAlpha = 1e-4F;
 inline constexpr float kPiF = float(kPi);
 

@@ -1,19 +1,17 @@
 // lights.h — everything that emits, ready for next-event estimation
-// What       make_light_set() flattens the scene's lights, its environment and the emissive
-// triangles into
-//            arrays and a table that selects one emitter in proportion to its power.
+// What       make_light_set() flattens the scene's lights, its environment and the emissive triangles
+//            into arrays and a table that selects one emitter in proportion to its power.
 //            sample_light() draws a direction towards an emitter; pdf_…() say with which density it
 //            would have drawn a direction that the BSDF found, for multiple importance sampling.
-// In / Out   world frame; wi unit, away from the point; radiance in W/(m² sr); pdfs per solid angle
-// at the
-//            point, the emitter's selection included
+// In / Out   world frame; wi unit, away from the point; radiance in W/(m² sr); pdfs per solid angle at
+//            the point, the emitter's selection included
 // Guarantee  same scene, same numbers: same sample. A constant environment is never drawn: BSDF
-// sampling
-//            alone finds it at least as well, and a vertex keeps to one shadow ray.
-//            pdf_environment() is then 0, so that multiple importance sampling gives the BSDF
-//            sample its whole weight.
+//            sampling alone finds it at least as well, and a vertex keeps to one shadow ray.
+//            pdf_environment() is then 0, so that multiple importance sampling gives the BSDF sample
+//            its whole weight.
 // Limits     rectangles emit from the side of cross(edge_u, edge_v) and block nothing
-// Cost       selection O(1), nothing with a single emitter; environments one lookup table per axis
+// Cost       selection O(1), nothing with a single emitter; about 10 ns for a point or far rectangle,
+//            40 to 60 ns for a near rectangle or a map (bench/shading)
 // Errors     none: the scene is validated before
 #pragma once
 

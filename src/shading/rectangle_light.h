@@ -1,12 +1,9 @@
 // rectangle_light.h — a one-sided rectangle (or parallelogram) that emits
-// What       sampled uniformly by solid angle where it fills a good part of the hemisphere, by area
-// where
-//            it is far (kNearSolidAngle): there the densities agree within a few percent, and an
-//            area sample costs a tenth. Parallelograms whose edges aren't orthogonal are sampled by
-//            area always.
+// What       sampled uniformly by solid angle from near, by area from further away: there the two
+//            densities are nearly the same, and an area sample costs a fifth. Parallelograms whose
+//            edges aren't orthogonal are sampled by area always.
 // In / Out   world frame; pdfs per solid angle at the point
-// Source     C. Ureña et al., "An Area-Preserving Parametrization for Spherical Rectangles", EGSR
-// 2013
+// Source     C. Ureña et al., "An Area-Preserving Parametrization for Spherical Rectangles", EGSR 2013
 #pragma once
 
 #include <cmath>

@@ -1,10 +1,8 @@
 // surface_material.h — a material at one point of a surface
-// What       eval_material() multiplies a material's factors with its textures at uv (bilinear,
-// glTF's
-//            channels and wrap modes, sRGB decoded texel by texel before filtering)
-// Out        linear values; the normal in tangent space: x along dP/du, y along dP/dv of glTF (up
-// in the
-//            picture), z along the interpolated normal; unit, (0, 0, 1) without a normal texture
+// What       eval_material() multiplies a material's factors with its textures at uv: bilinear, with
+//            glTF's channels and wrap modes, sRGB decoded texel by texel before filtering
+// Out        linear values; the normal in tangent space: x along dP/du, y along -dP/dv (up in
+//            the picture), z along the interpolated normal; unit, (0, 0, 1) without a normal texture
 // Cost       without textures a copy; about 10 ns for each texture
 // Limits     no mipmaps: the path tracer's own samples filter
 #pragma once
