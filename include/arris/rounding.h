@@ -35,11 +35,15 @@ struct MeshView {
 // How a hit finds the rounding near it (paper §3.2 against the index by face; bench/rounding compares).
 enum class Detection { face_index, kd_tree };
 
+// What to do with a closed convex solid into which a ball of the radius does not fit.
+enum class TooLarge { error, leave_sharp };
+
 struct RoundingOptions {
   double radius = 0;  // > 0, in the mesh's units
   RoundEdges edges = RoundEdges::convex;
   double min_angle = radians(30);
   Detection detection = Detection::face_index;
+  TooLarge too_large = TooLarge::error;
 };
 
 // Position along a ray: origin + t * direction.
@@ -129,8 +133,18 @@ class Rounding {
   std::unique_ptr<const Data> data_;
 };
 
-// Throws Error (kind input, where = `name`) if the radius is not positive or not smaller than the inradius
-// of a convex solid; the message says the largest radius that works.
+// How large a radius fits.
+struct RadiusLimits {
+  std::optional<double> smallest_inradius;  // of the closed convex solids
+  std::optional<double> typical_inradius;   // their median
+  // Where there are none: the median of half the length of the edges that would be rounded.
+  std::optional<double> typical_edge;
+};
+RadiusLimits find_radius_limits(const MeshView& mesh, double min_angle,
+                                const std::string& name = "");
+
+// Throws Error (kind input, where = `name`) if the radius is not positive or, with TooLarge::error, not smaller
+// than the inradius of a closed convex solid; the message says the largest radius that works.
 Rounding make_rounding(const MeshView& mesh, const RoundingOptions& options,
                        const std::string& name = "");
 

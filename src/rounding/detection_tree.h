@@ -1,8 +1,11 @@
-// detection_tree.h — the paper's kd-tree over detection cylinders (§3.1, §3.2)
-// What       finds the arcs whose detection cylinder contains a point of the surface
-// Legend     v1, v2 ends of the edge; p1, p2 = v + dH on the axis; the detection cylinder runs from
-//            (v1+p1)/2 to (v2+p2)/2 with radius d/2 (Thales: it cuts both faces exactly at the touching lines)
-// Source     Courtin et al. §3.1 and §3.2: binary splits along the longest axis, one tree per object (here: per solid)
+// detection_tree.h — the paper's kd-tree over the regions where edges round the faces (§3.1, §3.2)
+// What       finds the arcs whose band on a face holds a point of that face
+// Source     Courtin et al. §3.2: binary splits in the middle of the longest axis, one tree per object (here: per solid).
+//            The paper's entries are detection cylinders from vertex to vertex. By Thales such a cylinder
+//            cuts its faces exactly along the bands (bands.h), but beside obtuse corners and at corners of more than
+//            three faces it leaves void points out. So the entries here are boxes of the bands themselves, and
+//            the test is the bands' own.
+// Guarantee  finds what the bands of the hit's triangle find (tests/rounding/oracle_test.cpp)
 #pragma once
 
 #include <cstdint>
@@ -13,21 +16,21 @@
 
 namespace arris {
 
-struct DetectionCylinder {
-  Vec3f end0, end1;
-  float radius;
+// Part of a face that one arc's rounding takes away; box in the solid's coordinates.
+struct DetectionEntry {
+  Vec3f low, high;
+  std::uint32_t face;
   std::uint32_t arc;
+  bool whole_face;
 };
 
 class DetectionTree {
  public:
-  // cylinders_by_solid: one vector for each solid, in its local coordinates.
-  explicit DetectionTree(std::span<const std::vector<DetectionCylinder>> cylinders_by_solid);
+  // entries_by_solid: one vector for each solid.
+  explicit DetectionTree(std::span<const std::vector<DetectionEntry>> entries_by_solid);
 
-  // Arcs of detection cylinders that contain the point (within `slack`): up to `found.size()` of them; returns how
-  // many.
-  std::size_t find(std::uint32_t solid, Vec3f point, float slack,
-                   std::span<std::uint32_t> found) const;
+  // Entries whose box may hold the point.
+  [[nodiscard]] std::span<const DetectionEntry> find(std::uint32_t solid, Vec3f point) const;
 
   [[nodiscard]] std::size_t bytes() const;
 
@@ -35,15 +38,14 @@ class DetectionTree {
   struct TreeNode {
     float split = 0;
     std::uint32_t axis_or_leaf = 0;  // 0..2: axis; 3: leaf
-    std::uint32_t first = 0;         // child (second one follows) or first entry
+    std::uint32_t first = 0;         // child (the second follows) or first entry
     std::uint32_t count = 0;
   };
-  void build(std::uint32_t node, std::vector<std::uint32_t>& items, int depth);
+  void build(std::uint32_t node, std::span<const DetectionEntry> items, int depth);
 
   std::vector<TreeNode> nodes_;
-  std::vector<std::uint32_t> roots_;    // per solid
-  std::vector<std::uint32_t> entries_;  // indices into cylinders_
-  std::vector<DetectionCylinder> cylinders_;
+  std::vector<std::uint32_t> roots_;     // per solid
+  std::vector<DetectionEntry> entries_;  // copied into every leaf that they reach into
 };
 
 }  // namespace arris

@@ -98,12 +98,11 @@ class RoundingMaker {
   }
 
   void make_solids() {
-    data_->face = std::move(regions_.region);
+    data_->face = regions_.region;
     data_->faces.reserve(regions_.planes.size());
     for (std::size_t r = 0; r < regions_.planes.size(); ++r) {
       data_->faces.push_back({regions_.planes[r].normal, regions_.planes[r].d, regions_.shell[r]});
     }
-    regions_.region = data_->face;
     data_->solids.resize(welded_.shells.size());
     for (std::size_t s = 0; s < welded_.shells.size(); ++s) {
       Solid& solid = data_->solids[s];
@@ -148,7 +147,14 @@ class RoundingMaker {
     }
     const bool convex_solid = solid.convex && solid.closed;
     ShellNetwork network = builder.build(s, convex_solid);
-    if (convex_solid && network.inverted) network = erode(s);
+    if (convex_solid && network.inverted) {
+      const InscribedBall ball = inscribed_ball(s);
+      if (ball.radius - options_.radius < 1e-6 * solid.size) {
+        leave_sharp(s, ball);
+        return;
+      }
+      network = erode(s, ball);
+    }
     data_->report.rounded_edges += network.rounded_edges;
     data_->report.rounded_corners += network.rounded_corners;
     shortened_ += network.shortened_edges;
@@ -157,23 +163,37 @@ class RoundingMaker {
     append(network, solid);
   }
 
-  // The radius has eaten features: E has fewer edges than P.
-  ShellNetwork erode(std::uint32_t s) {
+  [[nodiscard]] std::span<const Plane> planes_of(const Solid& solid) const {
+    return std::span(regions_.planes).subspan(solid.first_face, solid.face_count);
+  }
+
+  [[nodiscard]] InscribedBall inscribed_ball(std::uint32_t s) const {
+    const Solid& solid = data_->solids[s];
+    return largest_inscribed_ball(planes_of(solid), solid.size);
+  }
+
+  // No ball of the radius fits into the solid.
+  void leave_sharp(std::uint32_t s, const InscribedBall& ball) {
     Solid& solid = data_->solids[s];
-    const std::span<const Plane> planes(regions_.planes.data() + solid.first_face,
-                                        solid.face_count);
-    const InscribedBall ball = largest_inscribed_ball(planes, solid.size);
-    if (ball.radius - options_.radius < 1e-6 * solid.size) {
-      throw Error(Error::Kind::input, name_,
-                  "rounding radius " + format_length(options_.radius) +
-                      " is not below the inradius " + format_length(ball.radius) +
-                      " of the solid at (" + format_length(solid.center.x) + ", " +
-                      format_length(solid.center.y) + ", " + format_length(solid.center.z) +
-                      "); use at most " + format_length(0.99 * ball.radius));
+    if (options_.too_large == TooLarge::leave_sharp) {
+      solid.exact = false;
+      ++too_small_;
+      return;
     }
+    throw Error(Error::Kind::input, name_,
+                "rounding radius " + format_length(options_.radius) +
+                    " is not below the inradius " + format_length(ball.radius) +
+                    " of the solid at (" + format_length(solid.center.x) + ", " +
+                    format_length(solid.center.y) + ", " + format_length(solid.center.z) +
+                    "); use at most " + format_length(0.99 * ball.radius));
+  }
+
+  // The radius has eaten features: E has fewer edges than P.
+  ShellNetwork erode(std::uint32_t s, const InscribedBall& ball) {
+    Solid& solid = data_->solids[s];
     solid.rewired = true;
-    return make_eroded_polyhedron(planes, smooth_groups(solid), solid.first_face, options_.radius,
-                                  ball.center, solid.size);
+    return make_eroded_polyhedron(planes_of(solid), smooth_groups(solid), solid.first_face,
+                                  options_.radius, ball.center, solid.size);
   }
 
   // Faces joined by edges that stay sharp.
@@ -206,7 +226,6 @@ class RoundingMaker {
       arc.node0 += solid.first_node;
       if (!arc.is_stub()) arc.node1 += solid.first_node;
       data_->arcs.push_back(arc);
-      edge_ends_.push_back({source.v0, source.v1});
     }
     for (const NetworkNode& source : network.nodes) {
       Node node;
@@ -253,23 +272,49 @@ class RoundingMaker {
     }
   }
 
+  // The tree stands in for the bands, which are not kept beside it.
   void make_tree() {
-    std::vector<std::vector<DetectionCylinder>> cylinders(data_->solids.size());
-    for (std::size_t s = 0; s < data_->solids.size(); ++s) {
-      const Solid& solid = data_->solids[s];
-      for (std::uint32_t a = solid.first_arc; a < solid.first_arc + solid.arc_count; ++a) {
-        const Arc& arc = data_->arcs[a];
-        const auto [v0, v1] = edge_ends_[a];
-        if (arc.is_stub() || v0 == v1) continue;
-        // H = −(N_a + N_b)/|…| and d = r / sin α, α half the interior dihedral angle (paper §3).
-        const Vec3d sum = data_->faces[arc.face_a].normal + data_->faces[arc.face_b].normal;
-        const double sin_alpha = length(sum) / 2;
-        const Vec3d to_axis = -normalize(sum) * (options_.radius / sin_alpha);
-        cylinders[s].push_back({Vec3f(v0 + to_axis * 0.5), Vec3f(v1 + to_axis * 0.5),
-                                float(length(to_axis) * 0.5), a});
+    std::vector<std::vector<DetectionEntry>> entries(data_->solids.size());
+    for (const TriangleBand& b : bands_) {
+      const std::uint32_t face = data_->face[b.triangle];
+      const std::uint32_t s = data_->faces[face].solid;
+      const DetectionEntry part = detection_entry(b, face, data_->solids[s]);
+      if (entries[s].empty() || entries[s].back().face != face ||
+          entries[s].back().arc != part.arc) {
+        entries[s].push_back(part);
+        continue;
+      }
+      DetectionEntry& whole = entries[s].back();
+      whole.low = min(whole.low, part.low);
+      whole.high = max(whole.high, part.high);
+    }
+    data_->tree = std::make_unique<const DetectionTree>(entries);
+    data_->bands = {};
+    data_->band_begin = {};
+  }
+
+  // Box of the triangle's part where the band is not kept.
+  [[nodiscard]] DetectionEntry detection_entry(const TriangleBand& b, std::uint32_t face,
+                                               const Solid& solid) const {
+    const Triangle& t = mesh_.triangles[b.triangle];
+    const float depth[3] = {b.band.c0, b.band.c0 + b.band.cu, b.band.c0 + b.band.cv};
+    Vec3d low(INFINITY), high(-INFINITY);
+    const auto include = [&](Vec3d p) {
+      low = min(low, p);
+      high = max(high, p);
+    };
+    for (std::size_t i = 0; i < 3; ++i) {
+      const std::size_t j = (i + 1) % 3;
+      const Vec3d p = Vec3d(mesh_.positions[t[i]]) - solid.center;
+      const Vec3d q = Vec3d(mesh_.positions[t[j]]) - solid.center;
+      if (depth[i] > 0) include(p);
+      if ((depth[i] > 0) != (depth[j] > 0)) {
+        include(p + (q - p) * double(depth[i] / (depth[i] - depth[j])));
       }
     }
-    data_->tree = std::make_unique<const DetectionTree>(cylinders);
+    const Vec3d slack(kPlaneTolerance * solid.size);
+    return {Vec3f(low - slack), Vec3f(high + slack), face, b.band.arc,
+            b.band.cu == 0 && b.band.cv == 0};
   }
 
   void finish_report() {
@@ -293,6 +338,7 @@ class RoundingMaker {
     note(report.concave_edges, "concave edges stay sharp");
     note(report.nonmanifold_edges, "non-manifold edges stay sharp");
     note(shortened_, "edges stay sharp: the radius needs more length than they have");
+    note(too_small_, "solids stay sharp: no ball of the radius fits into them");
   }
 
   [[nodiscard]] std::uint64_t bytes() const {
@@ -312,8 +358,7 @@ class RoundingMaker {
   std::vector<std::uint32_t> triangle_begin_, triangles_;
   std::vector<TriangleBand> bands_;
   std::vector<std::uint32_t> walls_;
-  std::vector<std::pair<Vec3d, Vec3d>> edge_ends_;  // per arc
-  std::uint64_t cavities_ = 0, shortened_ = 0;
+  std::uint64_t cavities_ = 0, shortened_ = 0, too_small_ = 0;
 };
 
 }  // namespace

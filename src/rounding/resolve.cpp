@@ -15,7 +15,6 @@ namespace {
 constexpr double kOnSurface = 1e-7;
 // Below this cosine between ray and face, the hit's own t is better than the intersection with the plane.
 constexpr double kGrazing = 1e-3;
-constexpr std::size_t kMaxDetected = 16;
 
 struct FaceHit {
   std::uint32_t face;
@@ -129,17 +128,29 @@ std::optional<Place> detect_by_bands(const Rounding::Data& data, const Solid& so
   return place_of(data, solid, deepest->arc, x);
 }
 
-// Paper §3.2: kd-tree over detection cylinders.
+// Paper §3.2: a kd-tree instead of the triangle's bands.
 std::optional<Place> detect_by_tree(const Rounding::Data& data, const Solid& solid,
-                                    std::uint32_t solid_index, Vec3d x) {
-  std::uint32_t found[kMaxDetected];
-  const std::size_t count =
-      data.tree->find(solid_index, Vec3f(x), float(kOnSurface * solid.size), found);
-  for (std::size_t i = 0; i < count; ++i) {
-    const std::optional<Place> place = place_of(data, solid, found[i], x);
-    if (place) return place;
+                                    std::uint32_t face_index, Vec3d x) {
+  const Face& face = data.faces[face_index];
+  const Vec3d ball = x - face.normal * data.radius;
+  const DetectionEntry* deepest = nullptr;
+  double depth = kOnSurface * solid.size;
+  for (const DetectionEntry& entry : data.tree->find(face.solid, Vec3f(x))) {
+    if (entry.face != face_index) continue;
+    const Arc& arc = data.arcs[entry.arc];
+    const Face& other = data.faces[arc.face_a == face_index ? arc.face_b : arc.face_a];
+    const double d =
+        entry.whole_face ? solid.size : dot(other.normal, ball) - (other.d - data.radius);
+    if (d <= kOnSurface * solid.size) continue;
+    if (!solid.exact) {
+      if (const std::optional<Place> place = place_of(data, solid, entry.arc, x)) return place;
+    } else if (d > depth) {
+      depth = d;
+      deepest = &entry;
+    }
   }
-  return std::nullopt;
+  if (deepest == nullptr) return std::nullopt;
+  return place_of(data, solid, deepest->arc, x);
 }
 
 }  // namespace
@@ -166,12 +177,9 @@ Rounding& Rounding::operator=(Rounding&&) noexcept = default;
 Rounding::~Rounding() = default;
 
 bool Rounding::is_kept(std::uint32_t triangle, double u, double v) const {
-  if (data_->tree) return data_->band_begin[triangle] == data_->band_begin[triangle + 1];
-  const Band* const last = data_->bands.data() + data_->band_begin[triangle + 1];
-  for (const Band* b = data_->bands.data() + data_->band_begin[triangle]; b != last; ++b) {
-    if (b->depth(float(u), float(v)) > 0) return false;
-  }
-  return true;
+  if (data_->tree) return false;
+  return is_kept_by_bands(data_->band_begin.data(), data_->bands.data(), triangle, float(u),
+                          float(v));
 }
 
 Resolution Rounding::resolve(const Ray& ray, const MeshHit& hit, RayStart start) const {
@@ -191,7 +199,7 @@ Resolution Rounding::resolve(const Ray& ray, const MeshHit& hit, RayStart start)
       return walk_from_void(*data_, solid, origin, at);
     }
   }
-  const std::optional<Place> place = data_->tree ? detect_by_tree(*data_, solid, solid_index, at.x)
+  const std::optional<Place> place = data_->tree ? detect_by_tree(*data_, solid, face_index, at.x)
                                                  : detect_by_bands(*data_, solid, hit, at.x);
   if (!place) return out;
   const Vec3d direction = entering ? at.direction : -at.direction;

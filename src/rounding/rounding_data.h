@@ -81,6 +81,16 @@ struct Rounding::Data {
   RoundingReport report;
 };
 
+// The test that every hit on a rounded mesh takes. Not kept by it means: resolve() decides.
+inline bool is_kept_by_bands(const std::uint32_t* band_begin, const Band* bands,
+                             std::uint32_t triangle, float u, float v) {
+  const Band* const last = bands + band_begin[triangle + 1];
+  for (const Band* b = bands + band_begin[triangle]; b != last; ++b) {
+    if (b->depth(u, v) > 0) return false;
+  }
+  return true;
+}
+
 // Direction of an arc, from p0 to p1.
 inline Vec3d arc_axis(const Face& a, const Face& b) {
   return normalize(cross(a.normal, b.normal));

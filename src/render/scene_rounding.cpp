@@ -1,0 +1,273 @@
+#include "render/scene_rounding.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <map>
+#include <tuple>
+
+#include "arris/error.h"
+#include "base/parallel_for.h"
+#include "render/auto_radius.h"
+
+namespace arris {
+namespace {
+
+// An automatic radius takes at most this part of what fits.
+constexpr double kAutoPartOfInradius = 0.3;
+constexpr double kAutoPartOfEdge = 0.3;
+
+// Columns of a similarity: orthogonal and of one length.
+std::optional<double> similarity_scale(const Mat3d& m) {
+  const double s = length(m.x);
+  const double slack = 1e-6 * s * s;
+  const bool same =
+      std::abs(dot(m.y, m.y) - s * s) < slack && std::abs(dot(m.z, m.z) - s * s) < slack;
+  const bool square = std::abs(dot(m.x, m.y)) < slack && std::abs(dot(m.y, m.z)) < slack &&
+                      std::abs(dot(m.z, m.x)) < slack;
+  return same && square ? std::optional(s) : std::nullopt;
+}
+
+std::vector<Vec3f> transformed_positions(const Mesh& mesh, const Affine3d& m) {
+  std::vector<Vec3f> out;
+  out.reserve(mesh.positions.size());
+  for (const Vec3f& p : mesh.positions) out.push_back(Vec3f(transform_point(m, Vec3d(p))));
+  return out;
+}
+
+std::string place_of(const Object& object) {
+  return "object \"" + object.name + "\"";
+}
+
+// One Rounding to be built, and the geometries that use it.
+struct Task {
+  std::uint32_t record = 0;  // the first geometry that needs it
+  RoundingOptions options;
+  bool in_object_space = false;
+  std::vector<std::uint32_t> users;
+  std::shared_ptr<const Rounding> result;
+};
+
+class Maker {
+ public:
+  Maker(const SceneGeometry& geometry, const std::optional<RoundingSettings>& scene_default,
+        const SceneRoundingOptions& options)
+      : geometry_(geometry), scene_(geometry.scene), default_(scene_default), options_(options) {}
+
+  SceneRounding make() {
+    const auto start = std::chrono::steady_clock::now();
+    out_.geometries.resize(geometry_.embree.records().size());
+    collect_tasks();
+    parallel_for(tasks_.size(), {.grain = 1, .threads = options_.threads},
+                 [&](std::size_t i) { build(tasks_[i]); });
+    for (Task& task : tasks_) attach(task);
+    if (out_.any) find_crowded();
+    out_.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    return std::move(out_);
+  }
+
+ private:
+  [[nodiscard]] const GeometryRecord& record(std::uint32_t index) const {
+    return geometry_.embree.records()[index];
+  }
+
+  void collect_tasks() {
+    std::vector<double> radii(geometry_.embree.records().size(), 0);
+    parallel_for(radii.size(), {.grain = 8, .threads = options_.threads}, [&](std::size_t i) {
+      const GeometryRecord& r = record(std::uint32_t(i));
+      if (r.triangles == nullptr) return;
+      const Object& object = scene_.objects[r.object.index];
+      const std::optional<RoundingSettings>& s = object.rounding ? object.rounding : default_;
+      if (s && s->method == RoundMethod::exact) radii[i] = resolve_radius(scene_, object, *s);
+    });
+    std::map<std::tuple<std::uint32_t, double, int, double>, std::size_t> shared;
+    for (std::uint32_t i = 0; i < radii.size(); ++i) {
+      if (!(radii[i] > 0)) continue;
+      const GeometryRecord& r = record(i);
+      const Object& object = scene_.objects[r.object.index];
+      const RoundingSettings& settings = object.rounding ? *object.rounding : *default_;
+      Task task;
+      task.record = i;
+      task.options = {radii[i], settings.edges, settings.min_angle, options_.detection,
+                      std::holds_alternative<AutoRadius>(settings.radius) ? TooLarge::leave_sharp
+                                                                          : TooLarge::error};
+      const std::optional<double> scale = similarity_scale(object.world_from_object.linear);
+      task.in_object_space = r.instanced && scale;
+      if (task.in_object_space) {
+        task.options.radius /= *scale;
+        const auto key =
+            std::tuple(r.mesh.index, task.options.radius, int(settings.edges), settings.min_angle);
+        const auto [at, is_new] = shared.try_emplace(key, tasks_.size());
+        if (!is_new) {
+          tasks_[at->second].users.push_back(i);
+          continue;
+        }
+      }
+      task.users.push_back(i);
+      tasks_.push_back(std::move(task));
+    }
+  }
+
+  void build(Task& task) const {
+    const GeometryRecord& r = record(task.record);
+    const Mesh& mesh = scene_.meshes[r.mesh.index];
+    const Object& object = scene_.objects[r.object.index];
+    const std::span<const Triangle> triangles(r.triangles, r.triangle_count);
+    std::vector<Vec3f> own;
+    std::span<const Vec3f> positions(r.positions, mesh.positions.size());
+    if (r.instanced && !task.in_object_space) {
+      own = transformed_positions(mesh, {object.world_from_object.linear, {}});
+      positions = own;
+    }
+    task.result = std::make_shared<const Rounding>(
+        make_rounding({positions, triangles}, task.options, place_of(object)));
+  }
+
+  void attach(Task& task) {
+    out_.any = true;
+    const RoundingReport& report = task.result->report();
+    out_.bytes += report.bytes;
+    for (const std::uint32_t i : task.users) {
+      const GeometryRecord& r = record(i);
+      const Object& object = scene_.objects[r.object.index];
+      RoundedGeometry& g = out_.geometries[i];
+      g.rounding = task.result.get();
+      if (!task.result->data().band_begin.empty()) {
+        g.band_begin = task.result->data().band_begin.data();
+        g.bands = task.result->data().bands.data();
+      }
+      g.in_world_space = !r.instanced;
+      double scale = 1;
+      if (task.in_object_space) {
+        g.rounding_from_world = inverse(object.world_from_object);
+        // A similarity's own linear part turns normals, mirrored or not.
+        g.world_from_rounding_normal = object.world_from_object.linear;
+        scale = *similarity_scale(object.world_from_object.linear);
+      } else if (r.instanced) {
+        g.rounding_from_world = {{}, -object.world_from_object.translation};
+      }
+      out_.edges += report.rounded_edges;
+      out_.corners += report.rounded_corners;
+      out_.summaries.push_back({object.name, task.options.radius * scale, report.rounded_edges,
+                                report.rounded_corners, report.notes});
+    }
+    out_.roundings.push_back(std::move(task.result));
+  }
+
+  struct Box {
+    Vec3d low, high;
+    std::uint32_t geometry;
+  };
+
+  // World boxes of all solids; where a rounded solid's overlaps another's, its geometry is crowded.
+  void find_crowded() {
+    std::vector<Box> boxes = solid_boxes();
+    std::ranges::sort(boxes, [](const Box& a, const Box& b) { return a.low.x < b.low.x; });
+    for (std::size_t i = 0; i < boxes.size(); ++i) {
+      for (std::size_t j = i + 1; j < boxes.size() && boxes[j].low.x < boxes[i].high.x; ++j) {
+        if (!overlap(boxes[i], boxes[j])) continue;
+        out_.geometries[boxes[i].geometry].crowded = true;
+        out_.geometries[boxes[j].geometry].crowded = true;
+      }
+    }
+  }
+
+  static bool overlap(const Box& a, const Box& b) {
+    // Solids that touch don't reach into each other.
+    const Vec3d slack = min(a.high - a.low, b.high - b.low) * 1e-4;
+    for (int axis = 0; axis < 3; ++axis) {
+      if (a.high[axis] <= b.low[axis] + slack[axis]) return false;
+      if (b.high[axis] <= a.low[axis] + slack[axis]) return false;
+    }
+    return true;
+  }
+
+  [[nodiscard]] std::vector<Box> solid_boxes() const {
+    std::vector<Box> boxes;
+    for (std::uint32_t i = 0; i < geometry_.embree.records().size(); ++i) {
+      const GeometryRecord& r = record(i);
+      if (r.triangles == nullptr) continue;
+      const RoundedGeometry& g = out_.geometries[i];
+      const std::size_t count = g.rounding != nullptr ? g.rounding->data().solids.size() : 1;
+      const std::size_t first = boxes.size();
+      boxes.resize(first + count, {Vec3d(INFINITY), Vec3d(-INFINITY), i});
+      for (std::uint32_t t = 0; t < r.triangle_count; ++t) {
+        const std::uint32_t solid = g.rounding != nullptr ? g.rounding->solid_of(t) : 0;
+        if (solid == kNone) continue;
+        Box& box = boxes[first + solid];
+        const WorldTriangle w = world_triangle(scene_, r, t);
+        for (const Vec3f& p : {w.p0, w.p1, w.p2}) {
+          box.low = min(box.low, Vec3d(p));
+          box.high = max(box.high, Vec3d(p));
+        }
+      }
+    }
+    return boxes;
+  }
+
+  const SceneGeometry& geometry_;
+  const Scene& scene_;
+  const std::optional<RoundingSettings>& default_;
+  SceneRoundingOptions options_;
+  SceneRounding out_;
+  std::vector<Task> tasks_;
+};
+
+Vec3d center_of(const Mesh& mesh, const Affine3d& m) {
+  Vec3d low(INFINITY), high(-INFINITY);
+  for (const Vec3f& p : mesh.positions) {
+    const Vec3d q = transform_point(m, Vec3d(p));
+    low = min(low, q);
+    high = max(high, q);
+  }
+  return (low + high) * 0.5;
+}
+
+RadiusLimits limits_of(const Mesh& mesh, const Object& object, double min_angle) {
+  const std::vector<Vec3f> positions = transformed_positions(mesh, object.world_from_object);
+  return find_radius_limits({positions, mesh.triangles}, min_angle, place_of(object));
+}
+
+double percent_radius(const Mesh& mesh, const Object& object, const RoundingSettings& settings,
+                      double percent) {
+  const RadiusLimits limits = limits_of(mesh, object, settings.min_angle);
+  if (!limits.smallest_inradius) {
+    throw Error(
+        Error::Kind::input, place_of(object),
+        "has no closed convex solid, so a radius in percent of the inradius has no meaning; give "
+        "the radius in scene units");
+  }
+  return *limits.smallest_inradius * percent / 100;
+}
+
+double auto_radius(const Scene& scene, const Mesh& mesh, const Object& object,
+                   const RoundingSettings& settings) {
+  const double readable =
+      readable_radius(*scene.camera, scene.image, center_of(mesh, object.world_from_object));
+  const RadiusLimits limits = limits_of(mesh, object, settings.min_angle);
+  if (limits.typical_inradius) {
+    return std::min(readable, kAutoPartOfInradius * *limits.typical_inradius);
+  }
+  if (limits.typical_edge) return std::min(readable, kAutoPartOfEdge * *limits.typical_edge);
+  return 0;
+}
+
+}  // namespace
+
+double resolve_radius(const Scene& scene, const Object& object, const RoundingSettings& settings) {
+  if (settings.method == RoundMethod::none) return 0;
+  const Mesh& mesh = scene.meshes[object.mesh.index];
+  if (const auto* percent = std::get_if<PercentOfInradius>(&settings.radius)) {
+    return percent_radius(mesh, object, settings, percent->percent);
+  }
+  if (const auto* value = std::get_if<double>(&settings.radius)) return *value;
+  return auto_radius(scene, mesh, object, settings);
+}
+
+SceneRounding make_scene_rounding(const SceneGeometry& geometry,
+                                  const std::optional<RoundingSettings>& scene_default,
+                                  const SceneRoundingOptions& options) {
+  return Maker(geometry, scene_default, options).make();
+}
+
+}  // namespace arris

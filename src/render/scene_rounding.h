@@ -1,0 +1,59 @@
+// scene_rounding.h — the rounding of every object of a scene
+// What       resolves each object's radius to world units and builds its Rounding beside the geometry. Baked
+//            geometry is rounded in world space. Instances of one mesh by a similarity share one rounding in
+//            object space, as their radius over their scale agrees; other instances get their own, in world
+//            axes about the object's origin.
+// Errors     Error{input} naming the object, if a radius doesn't fit
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "arris/render.h"
+#include "arris/rounding.h"
+#include "render/scene_geometry.h"
+#include "rounding/rounding_data.h"
+
+namespace arris {
+
+// Rounding of one geometry, by EmbreeScene::records() index. Null pointers: not rounded.
+struct RoundedGeometry {
+  const std::uint32_t* band_begin = nullptr;  // null also where a kd-tree detects
+  const Band* bands = nullptr;
+  const Rounding* rounding = nullptr;
+  bool in_world_space = true;
+  // Other solids reach into the void between sharp and rounded edges: look for them before it is crossed.
+  bool crowded = false;
+  Affine3d rounding_from_world;
+  Mat3d world_from_rounding_normal;
+
+  [[nodiscard]] bool is_kept(std::uint32_t triangle, float u, float v) const {
+    return band_begin != nullptr && is_kept_by_bands(band_begin, bands, triangle, u, v);
+  }
+};
+
+struct SceneRounding {
+  std::vector<RoundedGeometry> geometries;
+  std::vector<std::shared_ptr<const Rounding>> roundings;
+  bool any = false;
+  // What was built, for PrepareStats.
+  double seconds = 0;
+  std::vector<RoundingSummary> summaries;
+  std::uint64_t edges = 0, corners = 0, bytes = 0;
+};
+
+struct SceneRoundingOptions {
+  int threads = 0;
+  Detection detection = Detection::face_index;
+};
+
+SceneRounding make_scene_rounding(const SceneGeometry& geometry,
+                                  const std::optional<RoundingSettings>& scene_default,
+                                  const SceneRoundingOptions& options);
+
+// The world radius that the settings mean for one object, 0 if none.
+double resolve_radius(const Scene& scene, const Object& object, const RoundingSettings& settings);
+
+}  // namespace arris
