@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "arris/image.h"
+#include "arris/rounding.h"
 #include "arris/scene.h"
 
 namespace arris {
@@ -21,12 +22,17 @@ std::vector<std::string> validate_scene(const Scene& scene);
 
 struct PrepareOptions {
   int threads = 0;  // 0: all
-  // The camera and picture size decide automatic radii; the scene's own if empty.
+  Detection detection = Detection::face_index;
 };
 
 class PreparedScene;
 // Throws Error with every problem of validate_scene() and of the rounding.
 std::shared_ptr<const PreparedScene> prepare_scene(Scene scene, const PrepareOptions& options = {});
+// The same scene with another default rounding: only the rounding is built, meshes and their acceleration
+// structure are shared. Objects with settings of their own keep them.
+std::shared_ptr<const PreparedScene> prepare_again(const PreparedScene& prepared,
+                                                   const RoundingSettings& scene_default,
+                                                   const PrepareOptions& options = {});
 
 // What rounding did to one object.
 struct RoundingSummary {

@@ -25,8 +25,8 @@ void throw_if_invalid(const Scene& scene) {
 
 }  // namespace
 
-PreparedScene::PreparedScene(std::shared_ptr<const SceneGeometry> geometry)
-    : geometry_(std::move(geometry)) {
+PreparedScene::PreparedScene(std::shared_ptr<const SceneGeometry> geometry, SceneRounding rounding)
+    : geometry_(std::move(geometry)), rounding_(std::move(rounding)) {
   const Scene& s = geometry_->scene;
   stats_.build_seconds = geometry_->build_seconds;
   stats_.objects = s.objects.size();
@@ -40,6 +40,11 @@ PreparedScene::PreparedScene(std::shared_ptr<const SceneGeometry> geometry)
                              mesh.triangles.size() * sizeof(Triangle) +
                              mesh.triangle_materials.size() * sizeof(MaterialId);
   }
+  stats_.round_seconds = rounding_.seconds;
+  stats_.rounded_edges = rounding_.edges;
+  stats_.rounded_corners = rounding_.corners;
+  stats_.rounding_bytes = rounding_.bytes;
+  stats_.rounding = rounding_.summaries;
 }
 
 PreparedScene::~PreparedScene() = default;
@@ -61,7 +66,17 @@ std::shared_ptr<const PreparedScene> prepare_scene(Scene scene, const PrepareOpt
                                                   EmbreeSceneOptions{.threads = options.threads});
   geometry->build_seconds =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  return std::make_shared<const PreparedScene>(std::move(geometry));
+  SceneRounding rounding = make_scene_rounding(*geometry, geometry->scene.rounding,
+                                               {options.threads, options.detection});
+  return std::make_shared<const PreparedScene>(std::move(geometry), std::move(rounding));
+}
+
+std::shared_ptr<const PreparedScene> prepare_again(const PreparedScene& prepared,
+                                                   const RoundingSettings& scene_default,
+                                                   const PrepareOptions& options) {
+  SceneRounding rounding =
+      make_scene_rounding(prepared.geometry(), scene_default, {options.threads, options.detection});
+  return std::make_shared<const PreparedScene>(prepared.shared_geometry(), std::move(rounding));
 }
 
 const PrepareStats& prepare_stats(const PreparedScene& prepared) {

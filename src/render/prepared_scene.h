@@ -17,6 +17,7 @@
 #include "arris/rounding.h"
 #include "arris/scene.h"
 #include "geometry/embree_scene.h"
+#include "render/scene_rounding.h"
 
 namespace arris {
 
@@ -58,16 +59,15 @@ struct SurfaceHit {
   bool rounding_seen = false;  // the ray met a rounded edge or corner: there, or passing one before
 };
 
-// What depends on the description alone and survives a change of radius.
-struct SceneGeometry;
-
 class PreparedScene {
  public:
-  explicit PreparedScene(std::shared_ptr<const SceneGeometry> geometry);
+  PreparedScene(std::shared_ptr<const SceneGeometry> geometry, SceneRounding rounding);
   ~PreparedScene();
 
   [[nodiscard]] const Scene& scene() const;
   [[nodiscard]] const SceneGeometry& geometry() const { return *geometry_; }
+  [[nodiscard]] std::shared_ptr<const SceneGeometry> shared_geometry() const { return geometry_; }
+  [[nodiscard]] const SceneRounding& rounding() const { return rounding_; }
   [[nodiscard]] const PrepareStats& stats() const { return stats_; }
 
   // The closest surface in (t_min, t_max).
@@ -77,6 +77,7 @@ class PreparedScene {
 
  private:
   std::shared_ptr<const SceneGeometry> geometry_;
+  SceneRounding rounding_;
   PrepareStats stats_;
 };
 

@@ -137,6 +137,8 @@ class Maker {
         g.bands = task.result->data().bands.data();
       }
       g.in_world_space = !r.instanced;
+      g.winding_is_outward =
+          g.in_world_space && std::ranges::none_of(task.result->data().solids, &Solid::turned);
       double scale = 1;
       if (task.in_object_space) {
         g.rounding_from_world = inverse(object.world_from_object);

@@ -24,6 +24,7 @@ struct RoundedGeometry {
   const Band* bands = nullptr;
   const Rounding* rounding = nullptr;
   bool in_world_space = true;
+  bool winding_is_outward = false;  // in world space, of every shell
   // Other solids reach into the void between sharp and rounded edges: look for them before it is crossed.
   bool crowded = false;
   Affine3d rounding_from_world;

@@ -85,7 +85,236 @@ SurfaceHit make_surface_hit(const SceneGeometry& geometry, const TraceRay& ray,
 }
 
 bool is_departure(const RTCHit& hit, const Departure& from) {
-  return geometry_of(hit) == from.geometry && hit.primID == from.triangle;
+  // From a rounded edge inward, a ray may well leave through the triangle it came by.
+  return geometry_of(hit) == from.geometry && hit.primID == from.triangle &&
+         from.feature == Feature::face;
+}
+
+// ---------------------------------------------------------------------------------------------------------------------
+// Rounding. A hit on a rounded object stands, moves onto an edge or corner, or the ray passes between the sharp and the
+// rounded surface (rounding.h). Closest hits are traced without a filter, as most hits are kept; only a ray that
+// passes is traced again, with a filter that drops the hits it passes. A ray then sees what touches the object from
+// outside at the very distance where it leaves (the main picture of the paper, its Fig. 9).
+
+struct Candidate {
+  std::uint32_t geometry = kNoGeometry;
+  std::uint32_t triangle = 0;
+  float u = 0, v = 0, t = 0;
+};
+
+struct Verdict {
+  Resolution::Outcome outcome = Resolution::Outcome::kept;
+  RoundedHit hit;         // if moved: t of the ray, normal in world space
+  bool entering = false;  // of a resolved hit
+};
+
+Ray local_ray(const RoundedGeometry& g, const TraceRay& ray) {
+  const Ray world{Vec3d(ray.origin), Vec3d(ray.direction)};
+  if (g.in_world_space) [[likely]] {
+    return world;
+  }
+  return {transform_point(g.rounding_from_world, world.origin),
+          transform_vector(g.rounding_from_world, world.direction)};
+}
+
+RayStart start_of(const RoundedGeometry& g, const TraceRay& ray, const Candidate& c) {
+  if (ray.from.geometry != c.geometry ||
+      g.rounding->solid_of(ray.from.triangle) != g.rounding->solid_of(c.triangle)) {
+    return RayStart::unknown;
+  }
+  return ray.from.side == Side::outside ? RayStart::outside : RayStart::inside;
+}
+
+// A ray that left this solid outward meets it from inside: it leaves the void in which it started.
+bool leaves_own_void(const RoundedGeometry& g, const TraceRay& ray, const Candidate& c) {
+  const Solid& solid = g.rounding->data().solids[g.rounding->solid_of(c.triangle)];
+  if (solid.closed) return true;
+  return ray.from.feature != Feature::face && !g.is_kept(c.triangle, c.u, c.v);
+}
+
+Verdict judge(const RoundedGeometry& g, const TraceRay& ray, const Candidate& c) {
+  Verdict verdict;
+  const std::uint32_t solid = g.rounding->solid_of(c.triangle);
+  if (solid == kNone) return verdict;
+  const Ray local = local_ray(g, ray);
+  verdict.entering = dot(g.rounding->face_normal(c.triangle), local.direction) < 0;
+  const bool kept = g.is_kept(c.triangle, c.u, c.v);
+  RayStart start = RayStart::unknown;
+  if (!verdict.entering) {
+    start = start_of(g, ray, c);
+    if (start == RayStart::outside && leaves_own_void(g, ray, c)) {
+      verdict.outcome = Resolution::Outcome::passed;
+      return verdict;
+    }
+    if (start == RayStart::outside) start = RayStart::unknown;
+  }
+  // From inside, a kept hit may still be that of a ray that starts in the void.
+  if (kept && (verdict.entering || start == RayStart::inside || !g.rounding->is_exact(solid))) {
+    return verdict;
+  }
+  const Resolution r = g.rounding->resolve(local, {c.triangle, c.u, c.v, c.t}, start);
+  verdict.outcome = r.outcome;
+  verdict.hit = r.hit;
+  if (r.outcome != Resolution::Outcome::moved) return verdict;
+  if (r.hit.t < ray.t_min && !verdict.entering) {
+    // Behind the start: a ray from the void is outside; a ray from inside grazes its own surface.
+    verdict.hit.t = ray.t_min;
+    if (start != RayStart::inside) verdict.outcome = Resolution::Outcome::passed;
+  }
+  if (!g.in_world_space) {
+    verdict.hit.normal = normalize(g.world_from_rounding_normal * r.hit.normal);
+  }
+  return verdict;
+}
+
+// Embree's context with what its filter needs.
+struct FilterContext {
+  RTCIntersectContext base;  // first, so that a pointer to it is a pointer to this
+  const SceneRounding* rounding;
+  const TraceRay* ray;
+  bool any_rounded = false;
+};
+
+Candidate candidate_of(const RTCHit& hit, float t) {
+  return {geometry_of(hit), hit.primID, hit.u, hit.v, t};
+}
+
+// Drops hits that the ray passes. For shadow rays, also what moved beyond their end.
+void filter_passed(const RTCFilterFunctionNArguments* args) {
+  if (args->valid[0] != -1) return;
+  auto* context = reinterpret_cast<FilterContext*>(args->context);
+  const auto* hit = reinterpret_cast<const RTCHit*>(args->hit);
+  const auto* query = reinterpret_cast<const RTCRay*>(args->ray);
+  const RoundedGeometry& g = context->rounding->geometries[geometry_of(*hit)];
+  if (g.rounding == nullptr) return;
+  const Verdict verdict = judge(g, *context->ray, candidate_of(*hit, query->tfar));
+  if (verdict.outcome == Resolution::Outcome::kept) return;
+  context->any_rounded = true;
+  const bool beyond =
+      verdict.outcome == Resolution::Outcome::moved && verdict.hit.t >= double(context->ray->t_max);
+  if (verdict.outcome == Resolution::Outcome::passed || beyond) args->valid[0] = 0;
+}
+
+FilterContext make_filter_context(const SceneRounding& rounding, const TraceRay& ray) {
+  FilterContext context{};
+  rtcInitIntersectContext(&context.base);
+  context.base.filter = &filter_passed;
+  context.rounding = &rounding;
+  context.ray = &ray;
+  return context;
+}
+
+void move_hit(SurfaceHit& hit, const TraceRay& ray, const Verdict& verdict) {
+  hit.t = float(verdict.hit.t);
+  hit.position = Vec3f(Vec3d(ray.origin) + Vec3d(ray.direction) * verdict.hit.t);
+  hit.geometric_normal = hit.shading_normal = Vec3f(verdict.hit.normal);
+  hit.side = verdict.entering ? Side::outside : Side::inside;
+  hit.feature = verdict.hit.feature;
+  hit.rounding_seen = true;
+}
+
+class RoundedTrace {
+ public:
+  RoundedTrace(const SceneGeometry& geometry, const SceneRounding& rounding, const TraceRay& ray)
+      : geometry_(geometry), rounding_(rounding), ray_(ray) {}
+
+  // The first hit of the mesh is not simply kept: what does the ray meet?
+  std::optional<SurfaceHit> settle(const RTCRayHit& first) {
+    const RoundedGeometry& g = rounding_.geometries[geometry_of(first.hit)];
+    const Candidate c = candidate_of(first.hit, first.ray.tfar);
+    const Verdict verdict = judge(g, ray_, c);
+    switch (verdict.outcome) {
+      case Resolution::Outcome::kept:
+        return make_surface_hit(geometry_, ray_, first);
+      case Resolution::Outcome::moved:
+        return moved(first, verdict, g.crowded);
+      case Resolution::Outcome::passed:
+        break;
+    }
+    return passed(first, verdict);
+  }
+
+ private:
+  // Something else may reach into the void that the ray crosses first.
+  std::optional<SurfaceHit> moved(const RTCRayHit& query, const Verdict& verdict, bool crowded) {
+    if (crowded && verdict.entering && verdict.hit.t > double(query.ray.tfar)) {
+      TraceRay across = ray_;
+      across.t_min = query.ray.tfar;
+      across.t_max = std::min(ray_.t_max, float(verdict.hit.t));
+      if (const auto other = trace_filtered(across, query.hit)) return finish(*other);
+    }
+    if (verdict.hit.t >= double(ray_.t_max)) return std::nullopt;
+    SurfaceHit hit = make_surface_hit(geometry_, ray_, query);
+    move_hit(hit, ray_, verdict);
+    return hit;
+  }
+
+  std::optional<SurfaceHit> passed(const RTCRayHit& query, const Verdict& verdict) {
+    TraceRay rest = ray_;
+    rest.t_min = query.ray.tfar;
+    const std::optional<RTCRayHit> next = trace_filtered(rest, query.hit);
+    if (next && verdict.entering && leaves_kept(query, *next)) {
+      // The rounding has no surface where the ray crosses the solid: its face stands instead of a hole.
+      return make_surface_hit(geometry_, ray_, query);
+    }
+    if (!next) return std::nullopt;
+    return finish(*next);
+  }
+
+  // The next hit is the way out of the same solid, through what is kept of it.
+  [[nodiscard]] bool leaves_kept(const RTCRayHit& entry, const RTCRayHit& exit) const {
+    if (geometry_of(entry.hit) != geometry_of(exit.hit)) return false;
+    const RoundedGeometry& g = rounding_.geometries[geometry_of(entry.hit)];
+    const std::uint32_t solid = g.rounding->solid_of(entry.hit.primID);
+    if (solid != g.rounding->solid_of(exit.hit.primID) || g.rounding->is_exact(solid)) return false;
+    const Ray local = local_ray(g, ray_);
+    return dot(g.rounding->face_normal(exit.hit.primID), local.direction) > 0;
+  }
+
+  // The filter has dropped what is passed; what is left is kept or moved.
+  SurfaceHit finish(const RTCRayHit& query) {
+    SurfaceHit hit = make_surface_hit(geometry_, ray_, query);
+    hit.rounding_seen = true;
+    const RoundedGeometry& g = rounding_.geometries[hit.geometry];
+    if (g.rounding == nullptr) return hit;
+    const Verdict verdict = judge(g, ray_, candidate_of(query.hit, query.ray.tfar));
+    if (verdict.outcome == Resolution::Outcome::moved) move_hit(hit, ray_, verdict);
+    return hit;
+  }
+
+  // Next hit at or behind range.t_min that the ray does not pass, other than `without`.
+  std::optional<RTCRayHit> trace_filtered(const TraceRay& range, const RTCHit& without) {
+    FilterContext context = make_filter_context(rounding_, ray_);
+    RTCRayHit query;
+    query.ray = make_ray(range);
+    for (;;) {
+      query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+      query.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
+      rtcIntersect1(geometry_.embree.handle(), &context.base, &query);
+      if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return std::nullopt;
+      const bool same =
+          geometry_of(query.hit) == geometry_of(without) && query.hit.primID == without.primID;
+      if (!same && !is_departure(query.hit, ray_.from)) return query;
+      query.ray.tnear = std::nextafter(query.ray.tfar, std::numeric_limits<float>::infinity());
+      query.ray.tfar = range.t_max;
+    }
+  }
+
+  const SceneGeometry& geometry_;
+  const SceneRounding& rounding_;
+  const TraceRay& ray_;
+};
+
+// Most hits: from outside, on what is kept. From inside, the ray may be leaving its void: judge() looks.
+bool is_plainly_kept(const SceneRounding& rounding, const TraceRay& ray, const RTCRayHit& query) {
+  const RoundedGeometry& g = rounding.geometries[geometry_of(query.hit)];
+  if (g.rounding == nullptr) return true;
+  if (!g.is_kept(query.hit.primID, query.hit.u, query.hit.v)) return false;
+  if (g.winding_is_outward) [[likely]] {
+    const Vec3f normal(query.hit.Ng_x, query.hit.Ng_y, query.hit.Ng_z);
+    return dot(normal, ray.direction) < 0;
+  }
+  return dot(g.rounding->face_normal(query.hit.primID), local_ray(g, ray).direction) < 0;
 }
 
 }  // namespace
@@ -103,7 +332,10 @@ std::optional<SurfaceHit> PreparedScene::intersect(const TraceRay& ray) const {
       return std::nullopt;
     }
     if (!is_departure(query.hit, ray.from)) [[likely]] {
-      return make_surface_hit(*geometry_, ray, query);
+      if (!rounding_.any || is_plainly_kept(rounding_, ray, query)) [[likely]] {
+        return make_surface_hit(*geometry_, ray, query);
+      }
+      return RoundedTrace(*geometry_, rounding_, ray).settle(query);
     }
     // A plane is met once: slivers can be met again by rounding.
     query.ray.tnear = std::nextafter(query.ray.tfar, std::numeric_limits<float>::infinity());
@@ -112,10 +344,15 @@ std::optional<SurfaceHit> PreparedScene::intersect(const TraceRay& ray) const {
 }
 
 bool PreparedScene::occluded(const TraceRay& ray) const {
-  RTCIntersectContext context;
-  rtcInitIntersectContext(&context);
   RTCRay query = make_ray(ray);
-  rtcOccluded1(geometry_->embree.handle(), &context, &query);
+  if (!rounding_.any) {
+    RTCIntersectContext context;
+    rtcInitIntersectContext(&context);
+    rtcOccluded1(geometry_->embree.handle(), &context, &query);
+  } else {
+    FilterContext context = make_filter_context(rounding_, ray);
+    rtcOccluded1(geometry_->embree.handle(), &context.base, &query);
+  }
   return query.tfar < 0;
 }
 

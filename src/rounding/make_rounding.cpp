@@ -109,6 +109,7 @@ class RoundingMaker {
       solid.center = welded_.shells[s].center();
       solid.size = welded_.shells[s].size();
       solid.closed = welded_.shells[s].closed;
+      solid.turned = welded_.shells[s].turned;
     }
     for (std::uint32_t f = 0; f < data_->faces.size(); ++f) {
       Solid& solid = data_->solids[data_->faces[f].solid];

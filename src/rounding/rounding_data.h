@@ -62,6 +62,7 @@ struct Solid {
   std::uint32_t first_node = 0, node_count = 0;
   std::uint32_t first_face = 0, face_count = 0;
   bool closed = false, convex = false;
+  bool turned = false;   // the mesh's own winding points inward
   bool exact = false;    // closed, convex, every edge rounded: the surface is that of opening(P)
   bool rewired = false;  // E lost features of P: the arc nearest to a point must be searched for
 };
