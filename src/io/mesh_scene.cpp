@@ -1,11 +1,22 @@
 #include "io/mesh_scene.h"
 
+#include <algorithm>
 #include <filesystem>
 #include <utility>
 
 #include "base/utf8_text.h"
 
 namespace arris {
+namespace {
+
+// A tab may part the names of several groups.
+bool has_control_character(std::string_view name) {
+  return std::any_of(name.begin(), name.end(), [](char c) {
+    return (std::uint8_t(c) < 0x20 && c != '\t') || c == 0x7F;
+  });
+}
+
+}  // namespace
 
 Scene make_mesh_scene(const std::string& file) {
   Scene scene;
@@ -16,7 +27,7 @@ Scene make_mesh_scene(const std::string& file) {
 
 std::string name_from_file(const std::string& file) {
   std::string name = std::filesystem::path(file).stem().string();
-  return name.empty() || !is_utf8(name) ? "model" : name;
+  return name.empty() || !problem_with_name(name).empty() ? "model" : name;
 }
 
 std::string problem_with_name(std::string_view name) {
@@ -27,6 +38,9 @@ std::string problem_with_name(std::string_view name) {
   if (!is_utf8(name)) {
     return "the name " + in_quotes(name) +
            " is not UTF-8 text; save the file as UTF-8 or rename it";
+  }
+  if (has_control_character(name)) {
+    return "the name " + in_quotes(name) + " holds a control character; rename it";
   }
   return "";
 }

@@ -22,7 +22,8 @@ Scene make_mesh_scene(const std::string& file);
 // The file's name without folder and extension: the name of an object that has none.
 std::string name_from_file(const std::string& file);
 
-// What is wrong with an object's or material's name: not UTF-8, too long. Empty if nothing is.
+// What is wrong with an object's or material's name: not UTF-8, too long, control
+// characters. Empty if nothing is.
 std::string problem_with_name(std::string_view name);
 
 // Adds the mesh and an object of its name with the material of number 0.

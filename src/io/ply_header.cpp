@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "base/utf8_text.h"
+#include "io/mesh_scene.h"
 
 namespace arris {
 namespace {
@@ -34,6 +35,11 @@ PlyType read_type(TextScanner& text) {
       " where a type should be: char, uchar, short, ushort, int, uint, float or double");
 }
 
+void check_name(const TextScanner& text, const std::string& name) {
+  const std::string problem = problem_with_name(name);
+  if (!problem.empty()) throw text.error(problem);
+}
+
 PlyEncoding read_encoding(TextScanner& text) {
   const std::string_view encoding = text.word(), version = text.word();
   if (version != "1.0") {
@@ -52,6 +58,7 @@ PlyElement read_element(TextScanner& text, const PlyHeader& header) {
   }
   PlyElement element;
   element.name = text.word();
+  check_name(text, element.name);
   for (const PlyElement& other : header.elements) {
     if (other.name == element.name) {
       throw text.error("the element " + in_quotes(element.name) + " appears twice");
@@ -83,6 +90,7 @@ PlyProperty read_property(TextScanner& text, const PlyHeader& header) {
   }
   property.type = read_type(text);
   property.name = text.word();
+  check_name(text, property.name);
   if (property.name.empty()) throw text.error("the property has no name");
   for (const PlyProperty& other : header.elements.back().properties) {
     if (other.name == property.name) {

@@ -1,6 +1,5 @@
 // stl.cpp — stereolithography files, ASCII and binary
-// Legend     binary: 80 bytes of header, facet count n (32 bits), n facets of 50 bytes: normal and
-// three
+// Legend     binary: 80 bytes of header, facet count n (32 bits), n facets of 50 bytes: normal and three
 //            corners (12 floats), 2 bytes of attributes; all little-endian
 #include <algorithm>
 #include <array>
@@ -43,9 +42,8 @@ bool has_binary_size(std::span<const std::uint8_t> bytes) {
          bytes.size() == kHeaderBytes + kFacetBytes * facet_count(bytes);
 }
 
-// Starts with the word "solid" and has no control characters: headers of binary files start with
-// it, too, but their facet count of 4 bytes, the last of them 0 for any file of less than 800 MB,
-// follows.
+// Starts with the word "solid" and has no control characters. Headers of binary files may start with it,
+// too, but then the facet count follows, whose last byte is 0 in any file of less than 800 MB.
 bool is_ascii(std::span<const std::uint8_t> bytes) {
   const auto first = bytes.first(std::min(bytes.size(), kSniffedBytes));
   const auto is_control = [](std::uint8_t c) { return c < 0x20 && (c < '\t' || c > '\r'); };

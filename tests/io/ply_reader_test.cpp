@@ -223,6 +223,8 @@ TEST(PlyReader, rejects_headers_it_can_not_read) {
   EXPECT_THAT(message_of("ply\nformat ascii 1.0\n" + rest + "end_header\n0 0 0\n"),
               HasSubstr("cloud of points"));
   EXPECT_THAT(message_of("ply\n" + rest + "end_header\n"), HasSubstr("no line \"format\""));
+  EXPECT_THAT(message_of("ply\nelement \xFF 1\n"), HasSubstr("is not UTF-8"));
+  EXPECT_THAT(message_of("ply\nelement a\x1B[1m 1\n"), HasSubstr("control character"));
   EXPECT_THAT(message_of("ply\nproperty float x\n"), HasSubstr("before the first element"));
   EXPECT_THAT(message_of("ply\n" + rest + "property float x\n"), HasSubstr("appears twice"));
   EXPECT_THAT(message_of("ply\n" + rest + "property long w\n"), HasSubstr("\"long\""));

@@ -1,0 +1,99 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "arris/io.h"
+#include "base/nearest_name.h"
+#include "io/file_bytes.h"
+#include "support/cut_every_byte.h"
+#include "support/error_message.h"
+#include "support/mesh_checks.h"
+#include "support/temporary_folder.h"
+
+namespace arris {
+namespace {
+
+using testing::AllOf;
+using testing::HasSubstr;
+
+const std::string kOff = "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n";
+const std::string kPly =
+    "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
+    "element face 1\nproperty list uchar int vertex_indices\nend_header\n"
+    "0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n";
+const std::string kObj = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
+const std::string kStl =
+    "solid\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\n"
+    "endfacet\nendsolid\n";
+
+class LoadScene : public testing::Test {
+ protected:
+  std::filesystem::path write(const std::string& name, const std::string& text) {
+    const std::filesystem::path path = folder_ / name;
+    write_file_whole(path, test::bytes_of(text));
+    return path;
+  }
+  std::string message_of(const std::filesystem::path& path) {
+    return test::error_message(load_scene, path);
+  }
+
+  test::TemporaryFolder folder_;
+};
+
+TEST_F(LoadScene, reads_each_format_by_its_extension) {
+  for (const auto& [name, text] : {std::pair("a.stl", kStl), std::pair("b.OBJ", kObj),
+                                   std::pair("c.Ply", kPly), std::pair("d.off", kOff)}) {
+    const Scene scene = load_scene(write(name, text));
+    ASSERT_EQ(scene.objects.size(), 1U) << name;
+    EXPECT_EQ(scene.objects[0].name, std::string(1, name[0]));
+    EXPECT_EQ(scene.meshes.at(0).triangles.size(), 1U);
+    EXPECT_EQ(scene.materials.size(), 1U);
+  }
+}
+
+TEST_F(LoadScene, names_the_format_of_a_wrong_extension) {
+  EXPECT_THAT(message_of(write("a.stl", kPly)), AllOf(HasSubstr("a.stl: holds PLY data, not STL"), HasSubstr(".ply")));
+  EXPECT_THAT(message_of(write("a.ply", kOff)), HasSubstr("holds OFF data, not PLY"));
+  EXPECT_THAT(message_of(write("a.obj", kStl)), HasSubstr("holds STL data, not OBJ"));
+  EXPECT_THAT(message_of(write("a.off", kStl)), HasSubstr("holds STL data, not OFF"));
+}
+
+TEST_F(LoadScene, suggests_an_extension_for_an_unknown_one) {
+  EXPECT_THAT(message_of("part.slt"), AllOf(HasSubstr("\".slt\""), HasSubstr("did you mean \".stl\"?"), HasSubstr(".ply")));
+  EXPECT_THAT(message_of("part.jpeg"), AllOf(HasSubstr("\".jpeg\" is not known"), HasSubstr(".obj")));
+  EXPECT_THAT(message_of("part"), HasSubstr("has no extension"));
+}
+
+TEST_F(LoadScene, says_what_is_wrong_with_the_file_itself) {
+  EXPECT_THAT(message_of(folder_ / "gone.stl"), HasSubstr("No such file"));
+  EXPECT_THAT(message_of(write("empty.obj", "")), HasSubstr("is empty"));
+  std::filesystem::create_directory(folder_ / "folder.stl");
+  EXPECT_THAT(message_of(folder_ / "folder.stl"), HasSubstr("is a folder"));
+}
+
+TEST_F(LoadScene, finds_the_libraries_and_pictures_beside_a_model) {
+  write("looks.mtl", "newmtl red\nKd 1 0 0\n");
+  const Scene scene = load_scene(write("a.obj", "mtllib looks.mtl\nusemtl red\n" + kObj));
+  EXPECT_EQ(scene.materials.at(scene.objects.at(0).material.index).base_color, Rgb(1, 0, 0));
+  EXPECT_THAT(message_of(write("b.obj", "mtllib gone.mtl\n" + kObj)), HasSubstr("\"gone.mtl\" is not there"));
+  EXPECT_THAT(message_of(write("c.obj", "mtllib .\n" + kObj)), HasSubstr("is a folder"));
+  write("pictures.mtl", "newmtl red\nmap_Kd bad.png\n");
+  write("bad.png", "no picture");
+  EXPECT_THAT(message_of(write("d.obj", "mtllib pictures.mtl\n" + kObj)), HasSubstr("bad.png"));
+}
+
+TEST(NearestName, finds_mistyped_ones_only) {
+  const std::vector<std::string> known = {"radius", "roughness", "Round", "fov"};
+  EXPECT_EQ(find_nearest_name("raduis", known), "radius");
+  EXPECT_EQ(find_nearest_name("roughnes", known), "roughness");
+  EXPECT_EQ(find_nearest_name("round", known), "Round");
+  EXPECT_EQ(find_nearest_name("fvo", known), "fov");
+  EXPECT_EQ(find_nearest_name("colour", known), std::nullopt);
+  EXPECT_EQ(find_nearest_name("xyz", known), std::nullopt);
+  EXPECT_EQ(find_nearest_name("", known), std::nullopt);
+  EXPECT_EQ(find_nearest_name(std::string(1000, 'r'), known), std::nullopt);
+}
+
+}  // namespace
+}  // namespace arris
