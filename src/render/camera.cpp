@@ -60,8 +60,9 @@ CameraRays make_camera_rays(const Camera& camera, const ImageSettings& image) {
 
 // With the view direction fixed, each side of the view pyramid bounds the camera's place by the point that
 // is farthest out on that side: x - z tan_x <= camera_x - camera_z tan_x for all points, and so on.
-Camera frame_scene(const Scene& scene) {
+Camera frame_scene(const Scene& scene, double fov_deg) {
   Camera camera;
+  camera.fov_deg = fov_deg;
   const Vec3d up = normalize(scene.up);
   const Vec3d aside = std::abs(up.x) < 0.9 ? Vec3d(1, 0, 0) : Vec3d(0, 1, 0);
   const Vec3d front = normalize(cross(aside, up));

@@ -24,6 +24,6 @@ inline TraceRay camera_ray(const CameraRays& camera, double x, double y) {
 
 // A three-quarter view from the front, the right and above, as near as the whole model allows with a
 // margin. Precondition: a valid scene.
-Camera frame_scene(const Scene& scene);
+Camera frame_scene(const Scene& scene, double fov_deg = Camera{}.fov_deg);
 
 }  // namespace arris

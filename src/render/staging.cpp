@@ -65,10 +65,14 @@ Texture make_fade() {
   return texture;
 }
 
+// With this the lit ground is about as bright as the backdrop behind it, so that the two blend: the
+// studio's is made for it, and under a white sky the two are nearly the same anyway.
+constexpr float kGroundAlbedo = 0.82F;
+
 Material make_ground_material(TextureId fade) {
   Material material;
   material.name = "ground";
-  material.base_color = Rgb(0.8F);
+  material.base_color = Rgb(kGroundAlbedo);
   material.roughness = 1;
   material.specular = 0;
   material.base_color_texture = fade;
@@ -116,11 +120,11 @@ bool is_default(const Material& material) {
          !material.metallic_roughness_texture && !material.glossy_mix;
 }
 
-void apply_material(Scene& scene, const std::optional<Material>& material) {
+void apply_material(Scene& scene, const StageOptions& options) {
   for (Material& each : scene.materials) {
-    if (material) {
-      each = *material;
-    } else if (is_default(each)) {
+    if (options.material) {
+      each = *options.material;
+    } else if (options.source == StageOptions::Source::model && is_default(each)) {
       each = *find_material_preset("plastic-grey");
     }
   }
@@ -135,6 +139,15 @@ void apply_lighting(Scene& scene, std::optional<Lighting> lighting) {
   } else if (!scene.environment) {
     scene.environment = ConstantEnvironment{};
   }
+}
+
+void apply_camera(Scene& scene, const CameraOptions& options) {
+  if (!scene.camera) scene.camera = frame_scene(scene, options.fov_deg.value_or(Camera{}.fov_deg));
+  Camera& camera = *scene.camera;
+  camera.position = options.position.value_or(camera.position);
+  camera.target = options.target.value_or(camera.target);
+  camera.up = options.up.value_or(camera.up);
+  camera.fov_deg = options.fov_deg.value_or(camera.fov_deg);
 }
 
 }  // namespace
@@ -157,17 +170,19 @@ Environment make_environment(Lighting lighting, Vec3d up) {
 }
 
 StagingReport stage_model(Scene& scene, const StageOptions& options) {
+  const bool is_model = options.source == StageOptions::Source::model;
   const bool has_camera = scene.camera.has_value();
-  apply_material(scene, options.material);
+  if (!has_camera && options.camera.up) scene.up = *options.camera.up;
+  apply_material(scene, options);
   apply_lighting(scene, options.lighting);
-  if (options.automatic_rounding && !scene.rounding) {
+  if (is_model && !scene.rounding) {
     RoundingSettings automatic;
     automatic.method = RoundMethod::exact;
     scene.rounding = automatic;
   }
-  if (!has_camera) scene.camera = frame_scene(scene);
+  apply_camera(scene, options.camera);
   StagingReport report;
-  if (options.ground.value_or(!has_camera)) report.ground_triangles = add_ground(scene);
+  if (options.ground.value_or(is_model && !has_camera)) report.ground_triangles = add_ground(scene);
   return report;
 }
 

@@ -14,12 +14,20 @@ namespace arris {
 
 enum class Lighting { studio, sky, white };
 
+// What replaces the file's camera, or the framed view, piece by piece.
+struct CameraOptions {
+  std::optional<Vec3d> position, target;
+  std::optional<Vec3d> up;  // without a camera in the file also the scene's: the ground lies below
+  std::optional<double> fov_deg;
+};
+
 struct StageOptions {
-  std::optional<Lighting>
-      lighting;                // replaces the file's lights; empty: studio, if the file has none
-  std::optional<bool> ground;  // empty: unless the file has a camera of its own
+  // A model is staged as described; a scene file only where an option says so.
+  enum class Source { model, scene_file } source = Source::model;
+  std::optional<Lighting> lighting;  // replaces the file's lights; empty: studio, if it has none
+  std::optional<bool> ground;        // empty: for models without a camera of their own
   std::optional<Material> material;  // replaces every material
-  bool automatic_rounding = true;    // where the file does not say how to round
+  CameraOptions camera;
 };
 
 struct StagingReport {

@@ -1,0 +1,162 @@
+// command_table.cpp — the table itself: a new option is one row here and its use in the command
+#include "arris/command_line.h"
+#include "arris/commands.h"
+
+namespace arris::program {
+namespace {
+
+const OptionRow kHelp{"--help", "", "show this help"};
+
+OptionGroup rounding_group(const std::string& default_radius) {
+  return {
+      "Rounded edges",
+      {{"--round", "auto|none|R|R%",
+        "radius in scene units, or in percent of each object's inradius; auto: large enough to be "
+        "seen, small enough for the part (default: " +
+            default_radius + ")"},
+       {"--round-edges", "convex|concave|both", "which edges (default: convex)"},
+       {"--round-min-angle", "DEG",
+        "edges that turn by less are part of a smooth surface (default: 30)"},
+       {"--round-method", "exact|shader|mesh:N|none",
+        "exact: rounded surfaces; shader: bevel shader, normals only; mesh:N: bevel geometry of N "
+        "subdivisions (default: exact)"}}};
+}
+
+OptionGroup camera_group() {
+  return {"Camera (without one the model is framed in a three-quarter view)",
+          {{"--camera-position", "X,Y,Z", "where the camera is"},
+           {"--camera-target", "X,Y,Z", "what it looks at (default: the middle of the model)"},
+           {"--camera-up", "X,Y,Z", "up in the picture (default: the file's up, Z for most)"},
+           {"--fov", "DEG", "vertical field of view (default: 35)"}}};
+}
+
+CommandRow render_row() {
+  return {
+      "render",
+      "INPUT",
+      1,
+      1,
+      "make a picture of a model or scene",
+      "A bare model (STL, OBJ, PLY, OFF, glTF) is staged: framed, put on a soft ground, lit as in "
+      "a studio, its "
+      "edges rounded. A scene file (.toml) is rendered as it says. Ctrl-C ends the render early "
+      "and keeps "
+      "the picture of the samples made so far (exit code 1); a second Ctrl-C ends the program.",
+      {{"Output",
+        {{"-o,--output", "FILE",
+          "the picture: .png .jpg (tone-mapped), .exr .pfm (linear); - writes PNG to stdout"},
+         {"--aov", "LIST",
+          "more layers, separated by commas: albedo, normal, depth, object, rounded; part of an "
+          ".exr, else "
+          "beside the picture as .NAME.pfm"},
+         {"--exposure", "STOPS", "brightness of .png and .jpg (default: 0)"},
+         {"--stats", "FILE", "write times, counts and memory as JSON; - for stdout"}}},
+       {"Picture",
+        {{"--size", "WxH", "in pixels (default: the scene's, else 1280x720)"},
+         {"--spp", "N", "samples per pixel (default: the scene's, else 64)"},
+         {"--time", "SECONDS", "end after this time, with the samples made until then"},
+         {"--max-depth", "N", "bounces of light (default: the scene's, else 8)"},
+         {"--seed", "N", "another pattern of noise (default: 0)"},
+         {"--samples", "A..B",
+          "only these samples of the sequence; arris merge joins such .exr parts"},
+         {"--integrator", "path", "how light is computed (default: path)"}}},
+       camera_group(),
+       {"Staging",
+        {{"--lighting", "studio|sky|white",
+          "replaces the file's lights (default: the file's, else studio)"},
+         {"--material", "NAME", "replaces the file's materials; --material list shows the names"},
+         {"--ground", "on|off",
+          "a soft ground under the model (default: on for bare models without a camera)"}}},
+       rounding_group("auto for bare models, what the file says for scenes"),
+       {"Running",
+        {{"--threads", "N", "default: all; the picture does not depend on it"},
+         {"--checkpoint", "FILE",
+          "save the state (.exr) every 30 s and go on from it; the picture is the same as without "
+          "a break"},
+         {"--quiet", "", "print errors only"},
+         {"--verbose", "", "print what was found and done"},
+         kHelp}}},
+      {{"arris render bracket.stl -o bracket.png", "a picture with rounded edges"},
+       {"arris render bracket.stl -o bracket.png --round 0.5 --material brass",
+        "radius 0.5, brass"},
+       {"arris render room.toml -o room.exr --spp 1024 --checkpoint room.state.exr",
+        "a long render that may be interrupted"},
+       {"arris render part.glb -o part.png --size 512x512 --time 10", "ten seconds' work"},
+       {"arris render part.obj -o a.exr --samples 0..512",
+        "the first half of a render on two machines"}},
+      run_render};
+}
+
+CommandRow shoot_row() {
+  return {
+      "shoot",
+      "INPUT",
+      1,
+      1,
+      "shoot rays at a model and print what they hit",
+      "Each input line holds a ray: ox oy oz dx dy dz. Empty lines and lines that begin with # are "
+      "skipped. Each output line is JSON: t in lengths of the direction (null: nothing hit), "
+      "position, unit "
+      "normal outward from the solid, object, feature (face, edge, corner), and inside: the ray "
+      "started in "
+      "the solid, so that t is where it leaves.",
+      {{"Rays", {{"--rays", "FILE", "file of rays; - reads stdin (required)"}}},
+       rounding_group("none"),
+       {"Running",
+        {{"--threads", "N", "default: all"},
+         {"--quiet", "", "print errors only besides the hits"},
+         kHelp}}},
+      {{"arris shoot bracket.stl --rays rays.txt", "one JSON line per ray"},
+       {"echo '0 0 9 0 0 -1' | arris shoot bracket.stl --rays -", "a single ray from above"},
+       {"arris shoot die.stl --rays rays.txt --round 0.5", "against the rounded solid"}},
+      run_shoot};
+}
+
+CommandRow merge_row() {
+  return {"merge",
+          "A.exr B.exr ...",
+          1,
+          4096,
+          "join parts of one render",
+          "The parts are .exr files that arris render wrote with --samples or that were "
+          "interrupted. Parts of "
+          "different scenes, sizes or seeds and parts that share samples are refused.",
+          {{"Output",
+            {{"-o,--output", "FILE", "the whole picture: .exr, or .png .jpg .pfm (required)"},
+             {"--exposure", "STOPS", "brightness of .png and .jpg (default: 0)"},
+             {"--quiet", "", "print errors only"},
+             kHelp}}},
+          {{"arris merge a.exr b.exr -o whole.exr", "two halves"}},
+          run_merge};
+}
+
+CommandRow compare_row() {
+  return {"compare",
+          "A B",
+          2,
+          2,
+          "measure how far two pictures are apart",
+          "Prints RMSE, largest difference, PSNR and FLIP (a perceptual measure, 0: equal, 1: as "
+          "different "
+          "as can be). .exr, .pfm and .hdr are compared by their linear values, .png and .jpg by "
+          "their codes "
+          "(0 to 1); of one of each the linear one is tone-mapped first.",
+          {{"Output",
+            {{"--max-rmse", "X", "exit with 1 if the RMSE is larger"},
+             {"--diff", "FILE", "write the FLIP map as a picture, dark: equal, bright: different"},
+             {"--json", "", "as JSON"},
+             kHelp}}},
+          {{"arris compare out.png reference.png", "four numbers"},
+           {"arris compare out.exr reference.exr --max-rmse 0.001", "as a test in a script"}},
+          run_compare};
+}
+
+}  // namespace
+
+std::span<const CommandRow> commands() {
+  static const std::vector<CommandRow> kCommands{render_row(), shoot_row(), merge_row(),
+                                                 compare_row()};
+  return kCommands;
+}
+
+}  // namespace arris::program

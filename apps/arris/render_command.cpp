@@ -1,0 +1,153 @@
+#include <fmt/format.h>
+
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+
+#include "arris/command_line.h"
+#include "arris/commands.h"
+#include "arris/console.h"
+#include "arris/error.h"
+#include "arris/io.h"
+#include "arris/render_job.h"
+#include "arris/render_request.h"
+#include "arris/rounding_report.h"
+#include "arris/stats_file.h"
+#include "arris/stop_signal.h"
+#include "arris/values.h"
+#include "io/file_bytes.h"
+#include "io/picture_file.h"
+#include "scene/material_presets.h"
+#include "scene/scene_fingerprint.h"
+
+namespace arris::program {
+namespace {
+
+class Stopwatch {
+ public:
+  [[nodiscard]] double seconds() const {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+  }
+
+ private:
+  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+};
+
+int print_materials() {
+  for (const MaterialPreset& preset : material_presets()) {
+    fmt::print("{:<16}{}\n", preset.name, preset.description);
+  }
+  return 0;
+}
+
+void write_stdout(const std::vector<std::uint8_t>& bytes) {
+  if (std::fwrite(bytes.data(), 1, bytes.size(), stdout) != bytes.size() ||
+      std::fflush(stdout) != 0) {
+    throw Error(Error::Kind::failed, "stdout", "can't be written");
+  }
+}
+
+void write_picture(const RenderRequest& request, const JobResult& result, double exposure) {
+  SaveOptions options;
+  options.exposure = exposure;
+  options.attributes = attributes_of(result.part);
+  if (request.output == "-") {
+    write_stdout(encode_picture(result.picture, PictureFormat::png, options));
+  } else {
+    save_picture(result.picture, request.output, options);
+  }
+}
+
+void write_stats(const std::string& path, const RenderStats& stats) {
+  const std::string text = stats_json(stats);
+  const std::vector<std::uint8_t> bytes(text.begin(), text.end());
+  if (path == "-") {
+    write_stdout(bytes);
+  } else {
+    write_file_whole(path, bytes);
+  }
+}
+
+RenderJob make_job(const RenderRequest& request, const Scene& scene) {
+  RenderJob job;
+  job.options.samples =
+      request.samples.value_or(SampleRange{0, std::uint32_t(scene.image.samples_per_pixel)});
+  job.options.time_limit_seconds = request.time_limit_seconds;
+  job.options.seed = request.seed;
+  job.options.threads = request.threads;
+  job.options.aovs = request.aovs;
+  job.part.scene = scene_fingerprint(scene);
+  job.part.seed = request.seed;
+  job.checkpoint = request.checkpoint;
+  return job;
+}
+
+void report_scene(Console& console, const Scene& scene, const PrepareStats& stats) {
+  for (const std::string& note : scene.notes) console.report(note);
+  report_rounding(console, scene, stats);
+  console.detail(fmt::format("{} triangles in {} objects, prepared in {}", stats.triangles,
+                             stats.objects,
+                             format_duration(stats.build_seconds + stats.round_seconds)));
+  const Camera& camera = *scene.camera;
+  console.detail(
+      fmt::format("camera: --camera-position {:.6g},{:.6g},{:.6g} --camera-target "
+                  "{:.6g},{:.6g},{:.6g} --fov {:g}",
+                  camera.position.x, camera.position.y, camera.position.z, camera.target.x,
+                  camera.target.y, camera.target.z, camera.fov_deg));
+}
+
+void report_result(Console& console, const RenderRequest& request, const JobResult& result,
+                   const Scene& scene) {
+  const std::string target = request.output == "-" ? "stdout" : request.output;
+  console.report(fmt::format("{}: {} x {} pixels, samples {}, {}", target, scene.image.width_px,
+                             scene.image.height_px, format_samples(result.part.samples),
+                             format_duration(result.seconds)));
+  if (result.seconds > 0) {
+    console.detail(fmt::format("{:.2f} million rays per second",
+                               double(result.rays.total) / result.seconds / 1e6));
+  }
+}
+
+}  // namespace
+
+int run_render(const Arguments& arguments) {
+  if (arguments.find("--material") == "list") return print_materials();
+  const RenderRequest request = make_render_request(arguments);
+  Console console(arguments);
+  const std::atomic<bool>& stop = catch_stop_signals();
+  RenderStats stats;
+
+  const Stopwatch load;
+  Scene loaded = load_scene(request.input);
+  const StagingReport staging = apply_request(loaded, request, arguments);
+  stats.load_seconds = load.seconds();
+
+  const auto prepared = prepare_scene(std::move(loaded), {.threads = request.threads});
+  const Scene& scene = scene_of(*prepared);
+  stats.prepare = prepare_stats(*prepared);
+  stats.prepare.triangles -= staging.ground_triangles;
+  stats.prepare.objects -= staging.ground_triangles > 0 ? 1 : 0;
+  report_scene(console, scene, stats.prepare);
+  if (stop) throw Error(Error::Kind::failed, "", "stopped before the first sample");
+
+  RenderJob job = make_job(request, scene);
+  job.options.stop = &stop;
+  job.options.on_progress = [&](const Progress& progress) { console.show_progress(progress); };
+  const JobResult result = run_job(*make_path_renderer(), *prepared, job);
+  console.end_progress();
+  stats.rays = result.rays;
+  stats.render_seconds = result.seconds;
+
+  const Stopwatch write;
+  write_picture(request, result, scene.image.exposure);
+  stats.write_seconds = write.seconds();
+  if (request.stats) write_stats(*request.stats, stats);
+  report_result(console, request, result, scene);
+  if (!stop || result.complete) return 0;
+  throw Error(Error::Kind::failed, "",
+              fmt::format("stopped; the picture holds samples {} of {}..{}",
+                          format_samples(result.part.samples), job.options.samples.first,
+                          job.options.samples.last));
+}
+
+}  // namespace arris::program

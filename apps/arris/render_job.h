@@ -1,0 +1,37 @@
+// render_job.h — a render in chunks, with a time limit and a checkpoint
+// What       run_job() renders the samples in chunks of kChunkSamples, whatever the options, and adds them up. A
+//            checkpoint holds the sum of whole chunks, so that going on from it gives the same bits.
+// Errors     kind input: a checkpoint of another render
+#pragma once
+
+#include <atomic>
+#include <filesystem>
+#include <functional>
+#include <optional>
+
+#include "arris/render.h"
+#include "io/render_part.h"
+
+namespace arris::program {
+
+inline constexpr std::uint32_t kChunkSamples = 4;
+inline constexpr double kCheckpointSeconds = 30;
+
+struct RenderJob {
+  RenderOptions options;
+  RenderPart part;  // scene, seed and integrator; its samples are filled in
+  std::optional<std::filesystem::path> checkpoint;
+};
+
+struct JobResult {
+  Picture picture;
+  RenderPart part;
+  RayCounts rays;             // of this run
+  double seconds = 0;         // of this run
+  std::uint64_t resumed = 0;  // samples from the checkpoint
+  bool complete = false;      // all samples that were asked for
+};
+
+JobResult run_job(const Renderer& renderer, const PreparedScene& scene, const RenderJob& job);
+
+}  // namespace arris::program

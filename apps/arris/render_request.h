@@ -1,0 +1,36 @@
+// render_request.h — the options of `arris render`, checked before any work begins
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "arris/command_line.h"
+#include "arris/render.h"
+#include "arris/scene.h"
+#include "render/staging.h"
+
+namespace arris::program {
+
+struct RenderRequest {
+  std::filesystem::path input;
+  std::string output;  // "-": PNG to stdout
+  std::optional<std::string> stats;
+  std::optional<std::filesystem::path> checkpoint;
+  StageOptions stage;
+  std::optional<SampleRange> samples;  // empty: from 0 to the scene's
+  double time_limit_seconds = 0;
+  std::uint32_t seed = 0;
+  int threads = 0;
+  std::vector<std::string> aovs;
+};
+
+RenderRequest make_render_request(const Arguments& arguments);
+
+void apply_image_options(ImageSettings& image, const Arguments& arguments);
+
+// Size, depth, exposure, rounding and staging as the options say.
+StagingReport apply_request(Scene& scene, const RenderRequest& request, const Arguments& arguments);
+
+}  // namespace arris::program

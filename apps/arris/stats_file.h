@@ -1,0 +1,22 @@
+// stats_file.h — the numbers of --stats
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "arris/render.h"
+
+namespace arris::program {
+
+struct RenderStats {
+  double load_seconds = 0, render_seconds = 0, write_seconds = 0;
+  PrepareStats prepare;
+  RayCounts rays;
+};
+
+std::string stats_json(const RenderStats& stats);
+
+// The most memory that this process has had, in bytes.
+std::uint64_t peak_memory_bytes();
+
+}  // namespace arris::program
