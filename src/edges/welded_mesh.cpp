@@ -165,6 +165,97 @@ void find_twins(WeldedMesh& mesh) {
   }
 }
 
+// Vertices of open edges that lie within other open edges. Splitting the triangles there closes the mesh.
+class JunctionHealer {
+ public:
+  explicit JunctionHealer(WeldedMesh& mesh) : mesh_(mesh) {}
+
+  // Returns whether any triangle was split: twins must then be found again.
+  bool heal() {
+    collect_open();
+    if (open_.empty()) return false;
+    std::uint64_t tests = 0;
+    for (const std::uint32_t h : open_) {
+      find_junctions(h, tests);
+      if (junctions_.empty()) continue;
+      const std::uint32_t t = h / 3;
+      if (split_[t]) continue;  // one edge of a triangle at a time: the next round finds the others
+      split_[t] = true;
+      split(h);
+      mesh_.healed_junctions += junctions_.size();
+      any_ = true;
+    }
+    return any_;
+  }
+
+ private:
+  void collect_open() {
+    Vec3f low(std::numeric_limits<float>::infinity());
+    Vec3f high(-std::numeric_limits<float>::infinity());
+    for (std::uint32_t h = 0; h < mesh_.twin.size(); ++h) {
+      if (mesh_.twin[h] != kBoundary || is_degenerate(mesh_.triangles[h / 3])) continue;
+      open_.push_back(h);
+      vertices_.push_back(mesh_.origin(h));
+      vertices_.push_back(mesh_.target(h));
+      low = min(low, mesh_.vertices[mesh_.origin(h)]);
+      high = max(high, mesh_.vertices[mesh_.origin(h)]);
+    }
+    if (open_.empty()) return;
+    const Vec3f extent = high - low;
+    axis_ = extent.x >= extent.y ? (extent.x >= extent.z ? 0 : 2) : (extent.y >= extent.z ? 1 : 2);
+    const Vec3f reach = max(max(high, -low), extent);
+    tolerance_ = kJunctionTolerance * double(max_component(reach));
+    const auto along = [&](std::uint32_t v) { return mesh_.vertices[v][axis_]; };
+    std::ranges::sort(vertices_, [&](std::uint32_t a, std::uint32_t b) {
+      return along(a) != along(b) ? along(a) < along(b) : a < b;
+    });
+    vertices_.erase(std::ranges::unique(vertices_).begin(), vertices_.end());
+    split_.assign(mesh_.triangles.size(), false);
+  }
+
+  // Vertices strictly within the edge, in order along it.
+  void find_junctions(std::uint32_t h, std::uint64_t& tests) {
+    junctions_.clear();
+    const Vec3d a(mesh_.vertices[mesh_.origin(h)]);
+    const Vec3d b(mesh_.vertices[mesh_.target(h)]);
+    const double edge_length = length(b - a);
+    if (edge_length <= 2 * tolerance_) return;
+    const Vec3d edge = (b - a) / edge_length;
+    const double low = std::min(a[axis_], b[axis_]) - tolerance_;
+    const double high = std::max(a[axis_], b[axis_]) + tolerance_;
+    auto v = std::ranges::lower_bound(
+        vertices_, low, {}, [&](std::uint32_t i) { return double(mesh_.vertices[i][axis_]); });
+    for (; v != vertices_.end() && mesh_.vertices[*v][axis_] <= high; ++v) {
+      if (++tests > kMaxJunctionTests) return;
+      const Vec3d p = Vec3d(mesh_.vertices[*v]) - a;
+      const double along = dot(p, edge);
+      if (along <= tolerance_ || along >= edge_length - tolerance_) continue;
+      if (length(p - edge * along) <= tolerance_) junctions_.push_back({along, *v});
+    }
+    std::ranges::sort(junctions_);
+  }
+
+  // (a, b, c) with vertices m1 … mn on a→b: (a, m1, c), (m1, m2, c), … (mn, b, c).
+  void split(std::uint32_t h) {
+    const std::uint32_t b = mesh_.target(h);
+    const std::uint32_t c = mesh_.origin(WeldedMesh::previous(h));
+    const std::uint32_t a = mesh_.origin(h);
+    mesh_.triangles[h / 3] = {a, junctions_[0].second, c};
+    for (std::size_t i = 0; i < junctions_.size(); ++i) {
+      const std::uint32_t next = i + 1 < junctions_.size() ? junctions_[i + 1].second : b;
+      mesh_.triangles.push_back({junctions_[i].second, next, c});
+    }
+  }
+
+  WeldedMesh& mesh_;
+  std::vector<std::uint32_t> open_, vertices_;
+  std::vector<bool> split_;
+  std::vector<std::pair<double, std::uint32_t>> junctions_;
+  double tolerance_ = 0;
+  int axis_ = 0;
+  bool any_ = false;
+};
+
 void collect_shell(WeldedMesh& mesh, std::uint32_t seed) {
   const auto index = std::uint32_t(mesh.shells.size());
   Shell shell;
@@ -213,9 +304,10 @@ WeldedMesh make_welded_mesh(const MeshView& mesh, const std::string& name) {
     welded.degenerate_triangles += is_degenerate(welded.triangles.back()) ? 1 : 0;
   }
   find_twins(welded);
-  welded.shell.assign(mesh.triangles.size(), kNone);
-  welded.triangles_by_shell.reserve(mesh.triangles.size());
-  for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
+  while (JunctionHealer(welded).heal()) find_twins(welded);
+  welded.shell.assign(welded.triangles.size(), kNone);
+  welded.triangles_by_shell.reserve(welded.triangles.size());
+  for (std::uint32_t t = 0; t < welded.triangles.size(); ++t) {
     if (welded.shell[t] == kNone && !is_degenerate(welded.triangles[t])) collect_shell(welded, t);
   }
   return welded;

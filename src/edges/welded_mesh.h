@@ -1,11 +1,13 @@
 // welded_mesh.h — triangles joined into shells
 // What       vertices at the same place become one, triangles find their neighbours across edges, and
 //            connected triangles become shells. Where more than two triangles meet at an edge (pieces
-//            that touch), they are paired around the edge so that each pair encloses material.
-// In / Out   triangle indices stay the caller's; half-edge h = 3 * triangle + k runs from corner k to
+//            that touch), they are paired around the edge so that each pair encloses material. A triangle
+//            with other triangles' vertices on an open edge (a T-junction) is split there.
+// In / Out   triangle indices stay the caller's, pieces of split triangles follow them; half-edge h = 3 * triangle + k runs from corner k to
 //            corner k+1 of `triangles` (which are turned around where a shell is inside out)
 // Guarantee  twin[twin[h]] == h; tests/edges/welded_mesh_test.cpp
-// Limits     T-junctions stay boundaries
+// Limits     a T-junction is healed where its vertex lies on the edge within kJunctionTolerance of the mesh's
+//            size; at most kMaxJunctionTests vertices are looked at in all, the rest stay boundaries
 // Errors     Error{input}: index out of range, position not finite
 // Cost       linear, but for sorting the triangles around a vertex
 #pragma once
@@ -37,14 +39,18 @@ struct Shell {
   [[nodiscard]] double size() const { return length(bounds_max - bounds_min); }
 };
 
+inline constexpr double kJunctionTolerance = 1e-6;
+inline constexpr std::uint64_t kMaxJunctionTests = 50'000'000;
+
 struct WeldedMesh {
   std::vector<Vec3f> vertices;
-  std::vector<Triangle> triangles;
+  std::vector<Triangle> triangles;   // the caller's, then pieces of split ones
   std::vector<std::uint32_t> twin;   // per half-edge
   std::vector<std::uint32_t> shell;  // per triangle; kNone where two corners coincide
   std::vector<Shell> shells;
   std::vector<std::uint32_t> triangles_by_shell;  // triangle indices, shell after shell
   std::uint64_t degenerate_triangles = 0;         // with two corners in one place
+  std::uint64_t healed_junctions = 0;             // vertices on open edges of other triangles
 
   [[nodiscard]] std::uint32_t origin(std::uint32_t h) const { return triangles[h / 3][h % 3]; }
   [[nodiscard]] static std::uint32_t next(std::uint32_t h) { return h % 3 == 2 ? h - 2 : h + 1; }

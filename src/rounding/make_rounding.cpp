@@ -82,23 +82,26 @@ class RoundingMaker {
     }
   }
 
+  // The caller's triangles: pieces of split ones have no barycentrics of their own.
   void sort_triangles_by_region() {
+    const std::size_t count = mesh_.triangles.size();
     triangle_begin_.assign(regions_.planes.size() + 2, 0);
-    for (const std::uint32_t r : regions_.region) {
-      if (r != kNone) ++triangle_begin_[r + 2];
+    for (std::size_t t = 0; t < count; ++t) {
+      if (regions_.region[t] != kNone) ++triangle_begin_[regions_.region[t] + 2];
     }
     for (std::size_t r = 2; r < triangle_begin_.size(); ++r) {
       triangle_begin_[r] += triangle_begin_[r - 1];
     }
     triangles_.resize(triangle_begin_.back());
-    for (std::uint32_t t = 0; t < regions_.region.size(); ++t) {
+    for (std::uint32_t t = 0; t < count; ++t) {
       const std::uint32_t r = regions_.region[t];
       if (r != kNone) triangles_[triangle_begin_[r + 1]++] = t;
     }
   }
 
   void make_solids() {
-    data_->face = regions_.region;
+    data_->face.assign(regions_.region.begin(),
+                       regions_.region.begin() + std::ptrdiff_t(mesh_.triangles.size()));
     data_->faces.reserve(regions_.planes.size());
     for (std::size_t r = 0; r < regions_.planes.size(); ++r) {
       data_->faces.push_back({regions_.planes[r].normal, regions_.planes[r].d, regions_.shell[r]});
@@ -193,25 +196,26 @@ class RoundingMaker {
   ShellNetwork erode(std::uint32_t s, const InscribedBall& ball) {
     Solid& solid = data_->solids[s];
     solid.rewired = true;
-    return make_eroded_polyhedron(planes_of(solid), smooth_groups(solid), solid.first_face,
+    return make_eroded_polyhedron(planes_of(solid), smooth_groups(s), solid.first_face,
                                   options_.radius, ball.center, solid.size);
   }
 
   // Faces joined by edges that stay sharp.
-  std::vector<std::uint32_t> smooth_groups(const Solid& solid) {
+  std::vector<std::uint32_t> smooth_groups(std::uint32_t s) const {
+    const Solid& solid = data_->solids[s];
+    const Shell& shell = welded_.shells[s];
     std::vector<std::uint32_t> group(solid.face_count);
     std::iota(group.begin(), group.end(), 0U);
     const auto root = [&](std::uint32_t f) {
       while (group[f] != f) f = group[f] = group[group[f]];
       return f;
     };
-    for (std::uint32_t i = triangle_begin_[solid.first_face];
-         i < triangle_begin_[solid.first_face + solid.face_count]; ++i) {
-      const std::uint32_t t = triangles_[i];
+    for (std::uint32_t i = 0; i < shell.triangle_count; ++i) {
+      const std::uint32_t t = welded_.triangles_by_shell[shell.first_triangle + i];
       for (std::uint32_t h = 3 * t; h < 3 * t + 3; ++h) {
         if (kinds_[h] != EdgeKind::smooth) continue;
-        const std::uint32_t a = root(data_->face[t] - solid.first_face);
-        const std::uint32_t b = root(data_->face[welded_.twin[h] / 3] - solid.first_face);
+        const std::uint32_t a = root(regions_.region[t] - solid.first_face);
+        const std::uint32_t b = root(regions_.region[welded_.twin[h] / 3] - solid.first_face);
         group[std::max(a, b)] = std::min(a, b);
       }
     }
