@@ -313,25 +313,38 @@ inline double corner_sine(const std::vector<Vec3d>& loop, std::size_t i) {
   return length(cross(a, b)) / (length(a) * length(b));
 }
 
-// Cuts random ears of a convex loop that may have collinear points; never makes a degenerate
-// triangle.
+// How wide the loop still is without point i: the largest sine at its other points.
+inline double width_without(std::vector<Vec3d> loop, std::size_t i) {
+  loop.erase(loop.begin() + std::ptrdiff_t(i));
+  double widest = 0;
+  for (std::size_t j = 0; j < loop.size(); ++j) widest = std::max(widest, corner_sine(loop, j));
+  return widest;
+}
+
+enum class EarOrder { first, random };
+
+// Cuts ears of a convex loop that may have collinear points; makes no degenerate triangle where one can be avoided.
 inline std::vector<Triangle> cut_ears(std::vector<Vec3d> loop, std::vector<std::uint32_t> index,
-                                      Random& rng, bool in_order) {
+                                      EarOrder order, Random& rng) {
   constexpr double kCollinear = 1e-3;
   std::vector<Triangle> triangles;
   while (loop.size() > 3) {
     std::vector<std::size_t> ears;
+    std::size_t best = 0;
+    double best_width = -1;
     for (std::size_t i = 0; i < loop.size(); ++i) {
-      if (corner_sine(loop, i) < kCollinear) continue;
-      std::vector<Vec3d> rest = loop;
-      rest.erase(rest.begin() + std::ptrdiff_t(i));
-      double widest = 0;
-      for (std::size_t j = 0; j < rest.size(); ++j) widest = std::max(widest, corner_sine(rest, j));
-      if (widest > kCollinear) ears.push_back(i);
+      const double width = std::min(corner_sine(loop, i), width_without(loop, i));
+      if (width > kCollinear) ears.push_back(i);
+      if (width > best_width) {
+        best_width = width;
+        best = i;
+      }
     }
+    if (ears.empty()) ears.push_back(best);
     const std::size_t n = loop.size();
-    const std::size_t i =
-        in_order ? ears.front() : ears[std::size_t(uniform_int(rng, 0, int(ears.size()) - 1))];
+    const std::size_t i = order == EarOrder::first
+                              ? ears.front()
+                              : ears[std::size_t(uniform_int(rng, 0, int(ears.size()) - 1))];
     triangles.push_back({index[(i + n - 1) % n], index[i], index[(i + 1) % n]});
     loop.erase(loop.begin() + std::ptrdiff_t(i));
     index.erase(index.begin() + std::ptrdiff_t(i));
@@ -439,8 +452,9 @@ class MeshBuilder {
       for (std::size_t i = 0; i < loop.size(); ++i)
         add_triangle({m, loop[i], loop[(i + 1) % loop.size()]});
     } else {
-      for (Triangle t : cut_ears(points, loop, rng_, style_.triangulation == Triangulation::fan))
-        add_triangle(t);
+      const EarOrder order =
+          style_.triangulation == Triangulation::fan ? EarOrder::first : EarOrder::random;
+      for (Triangle t : cut_ears(points, loop, order, rng_)) add_triangle(t);
     }
     ++face_;
   }
@@ -507,19 +521,19 @@ inline std::vector<Polyhedron> make_solids(std::uint64_t seed) {
   solids.back().name = "slab";
   for (int sides = 3; sides <= 12; ++sides) solids.push_back(prism(sides, uniform(rng, 0.4, 2.5)));
   for (int sides = 4; sides <= 8; ++sides) solids.push_back(pyramid(sides, uniform(rng, 0.5, 2)));
-  for (int sides = 4; sides <= 7; ++sides) solids.push_back(crooked_pyramid(rng, sides));
-  const auto add_stone = [&](auto make) {
+  const auto add_random = [&](auto make) {
     for (;;) {
-      Polyhedron stone = make();
+      Polyhedron made = make();
       // Below half a degree or 0.2% of the size, float positions no longer say where an edge is.
-      if (least_turn(stone) > radians(0.5) && shortest_edge(stone) > 4e-3) {
-        solids.push_back(std::move(stone));
+      if (least_turn(made) > radians(0.5) && shortest_edge(made) > 4e-3) {
+        solids.push_back(std::move(made));
         return;
       }
     }
   };
-  for (int i = 0; i < 5; ++i) add_stone([&] { return hull_stone(rng, uniform_int(rng, 6, 22)); });
-  for (int i = 0; i < 5; ++i) add_stone([&] { return cut_stone(rng, uniform_int(rng, 1, 12)); });
+  for (int sides = 4; sides <= 7; ++sides) add_random([&] { return crooked_pyramid(rng, sides); });
+  for (int i = 0; i < 5; ++i) add_random([&] { return hull_stone(rng, uniform_int(rng, 6, 22)); });
+  for (int i = 0; i < 5; ++i) add_random([&] { return cut_stone(rng, uniform_int(rng, 1, 12)); });
   return solids;
 }
 

@@ -73,7 +73,8 @@ inline std::optional<RoundedHit> trace(const Ray& ray, const RoundedMesh& object
       case Resolution::Outcome::kept:
         return RoundedHit{hit.t, object.rounding->face_normal(hit.triangle), Feature::face};
       case Resolution::Outcome::moved:
-        return resolution.hit;
+        if (resolution.hit.t > 0) return resolution.hit;
+        [[fallthrough]];  // behind the origin: the ray left the rounded solid before it began
       case Resolution::Outcome::passed:
         if (object.rounding->is_exact(solid)) passed.insert(solid);
         break;
