@@ -34,7 +34,7 @@ Tally judge_everything(const SolidMesh& mesh, double radius, int rays,
   const Rounding rounding = make_rounded(mesh, radius, min_angle);
   Tally tally;
   for (RayKind kind : kAll)
-    tally.add(judge_rays(mesh, opening, rounding, kind, rays, 1, mesh.name));
+    tally.add(judge_rays(mesh, opening, rounding, {kind, rays, 1, mesh.name}));
   return tally;
 }
 

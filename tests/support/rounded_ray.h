@@ -60,7 +60,8 @@ struct RoundedMesh {
 // The first point of one rounded mesh on the ray. A ray whose first hit is from inside may have started in the
 // void between the sharp and the rounded surface, and enter the rounded solid before it leaves: that hit is
 // resolved even where the surface is kept.
-inline std::optional<RoundedHit> trace(const Ray& ray, const RoundedMesh& object) {
+inline std::optional<RoundedHit> trace(const Ray& ray, const RoundedMesh& object,
+                                       RayStart start = RayStart::unknown) {
   std::set<std::uint32_t> passed;  // exact solids that the ray has missed for good
   for (const MeshHit& hit : intersect_mesh(ray, object.mesh)) {
     const std::uint32_t solid = object.rounding->solid_of(hit.triangle);
@@ -68,13 +69,12 @@ inline std::optional<RoundedHit> trace(const Ray& ray, const RoundedMesh& object
     const bool from_inside = dot(object.rounding->face_normal(hit.triangle), ray.direction) > 0;
     if (!from_inside && object.rounding->is_kept(hit.triangle, hit.u, hit.v))
       return RoundedHit{hit.t, object.rounding->face_normal(hit.triangle), Feature::face};
-    const Resolution resolution = object.rounding->resolve(ray, hit);
+    const Resolution resolution = object.rounding->resolve(ray, hit, start);
     switch (resolution.outcome) {
       case Resolution::Outcome::kept:
         return RoundedHit{hit.t, object.rounding->face_normal(hit.triangle), Feature::face};
       case Resolution::Outcome::moved:
-        if (resolution.hit.t > 0) return resolution.hit;
-        [[fallthrough]];  // behind the origin: the ray left the rounded solid before it began
+        return resolution.hit;
       case Resolution::Outcome::passed:
         if (object.rounding->is_exact(solid)) passed.insert(solid);
         break;

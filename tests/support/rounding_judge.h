@@ -231,16 +231,31 @@ class Judge {
   double size_, t_tolerance_, normal_tolerance_deg_, surface_tolerance_;
 };
 
-// All edges of the solid rounded by `radius`, `count` rays of one kind.
+// Whether the host tells the kernel where its rays start.
+enum class Start { unknown, told };
+
+struct Volley {
+  RayKind kind = RayKind::outside;
+  int rays = 100;
+  std::uint64_t seed = 1;
+  std::string label;  // says how to make the solid again
+  Start start = Start::unknown;
+};
+
 inline Tally judge_rays(const SolidMesh& mesh, const Opening& opening, const Rounding& rounding,
-                        RayKind kind, int count, std::uint64_t seed, const std::string& label) {
-  RaySource source(mesh, opening, seed);
+                        const Volley& volley) {
+  RaySource source(mesh, opening, volley.seed);
   const Judge judge(mesh, opening);
   Tally tally;
-  for (int i = 0; i < count; ++i) {
-    const Ray ray = source.make(kind);
-    judge.judge(ray, trace(ray, RoundedMesh{mesh.view(), &rounding}),
-                fmt::format("{} {} seed {} ray {}", label, name_of(kind), seed, i), tally);
+  for (int i = 0; i < volley.rays; ++i) {
+    const Ray ray = source.make(volley.kind);
+    RayStart start = RayStart::unknown;
+    if (volley.start == Start::told)
+      start = opening.contains(ray.origin) ? RayStart::inside : RayStart::outside;
+    judge.judge(
+        ray, trace(ray, RoundedMesh{mesh.view(), &rounding}, start),
+        fmt::format("{} {} seed {} ray {}", volley.label, name_of(volley.kind), volley.seed, i),
+        tally);
   }
   return tally;
 }
