@@ -2,7 +2,6 @@
 
 #include <cmath>
 
-#include "base/trigonometry.h"
 #include "shading/ggx_albedo.h"
 
 namespace arris {
@@ -99,45 +98,6 @@ float add_coat(Bsdf& bsdf, const SurfaceMaterial& material) {
   return 1.0F - bsdf.share_coat;
 }
 
-BsdfSample delta_reflection(const Bsdf& bsdf, Rgb weight, float share) {
-  return {{-bsdf.wo.x, -bsdf.wo.y, bsdf.wo.z}, weight * (1.0F / share), share, true, false};
-}
-
-Vec3f refract(Vec3f wo, Vec3f h, float cos_oh, float cos_t, float eta) {
-  return h * (cos_oh / eta - cos_t) - wo * (1.0F / eta);
-}
-
-// u_side in [0, 1) decides between reflection and refraction.
-BsdfSample sample_clear_glass(const Bsdf& bsdf, float u_side) {
-  const Refraction glass = refract_glass(bsdf, bsdf.wo.z);
-  const float share = bsdf.share_glass;
-  if (u_side < glass.reflectance) {
-    return delta_reflection(bsdf, bsdf.glass_reflect * glass.reflectance,
-                            share * glass.reflectance);
-  }
-  const Vec3f wi = refract(bsdf.wo, {0, 0, 1}, bsdf.wo.z, glass.cos_t, bsdf.eta);
-  return {wi, bsdf.glass_transmit * (1.0F / share), share * (1.0F - glass.reflectance), true, true};
-}
-
-Vec3f sample_rough_glass(const Bsdf& bsdf, float u_side, Vec2f u) {
-  const Vec3f h = sample_ggx_normal(bsdf.glass_alpha, bsdf.wo, u);
-  const float cos_oh = dot(bsdf.wo, h);
-  const Refraction glass = refract_glass(bsdf, cos_oh);
-  // What leaves to the wrong side is absorbed.
-  if (u_side < glass.reflectance) {
-    const Vec3f wi = reflect(bsdf.wo, h);
-    return wi.z > 0.0F ? wi : Vec3f{};
-  }
-  const Vec3f wi = refract(bsdf.wo, h, cos_oh, glass.cos_t, bsdf.eta);
-  return wi.z < 0.0F ? wi : Vec3f{};
-}
-
-Vec3f sample_cosine_hemisphere(Vec2f u) {
-  const Vec2f circle = unit_circle(u.x);
-  const float r = std::sqrt(u.y);
-  return {r * circle.x, r * circle.y, std::sqrt(1.0F - u.y)};
-}
-
 }  // namespace
 
 Bsdf make_bsdf(const SurfaceMaterial& material, Vec3f wo_given, MediumSide side) {
@@ -180,45 +140,6 @@ Bsdf make_bsdf(const SurfaceMaterial& material, Vec3f wo_given, MediumSide side)
   }
   normalize_shares(bsdf);
   return bsdf;
-}
-
-std::optional<BsdfSample> sample_bsdf(const Bsdf& bsdf, float u_lobe, Vec2f u) {
-  // 1. Select a lobe; a delta lobe answers for itself.
-  Vec3f wi;
-  const float after_diffuse = bsdf.share_diffuse;
-  const float after_specular = after_diffuse + bsdf.share_specular;
-  const float after_coat = after_specular + bsdf.share_coat;
-  if (u_lobe < after_diffuse) {
-    wi = sample_cosine_hemisphere(u);
-  } else if (u_lobe < after_specular) {
-    if (bsdf.alpha == 0.0F) {
-      const Rgb f = schlick(bsdf.specular_f0, bsdf.specular_f90, schlick_weight(bsdf.wo.z));
-      return delta_reflection(bsdf, f, bsdf.share_specular);
-    }
-    wi = reflect(bsdf.wo, sample_ggx_normal(bsdf.alpha, bsdf.wo, u));
-  } else if (u_lobe < after_coat) {
-    if (bsdf.coat_alpha == 0.0F) {
-      const float fresnel = kCoatF0 + (1.0F - kCoatF0) * schlick_weight(bsdf.wo.z);
-      return delta_reflection(bsdf, Rgb(bsdf.coat * fresnel), bsdf.share_coat);
-    }
-    wi = reflect(bsdf.wo, sample_ggx_normal(bsdf.coat_alpha, bsdf.wo, u));
-  } else if (bsdf.share_glass > 0.0F) {
-    const float u_side = min_of((u_lobe - after_coat) / bsdf.share_glass, 0x1.fffffep-1F);
-    if (bsdf.glass_alpha == 0.0F) {
-      return sample_clear_glass(bsdf, u_side);
-    }
-    wi = sample_rough_glass(bsdf, u_side, u);
-  }
-  const bool from_glass = u_lobe >= after_coat;
-  if (wi.z <= 0.0F && !from_glass) {
-    return std::nullopt;
-  }
-  // 2. Weigh it by all lobes that could have drawn it.
-  const BsdfValue value = eval_bsdf_with_pdf(bsdf, wi);
-  if (!(value.pdf > 0.0F)) {
-    return std::nullopt;
-  }
-  return BsdfSample{wi, value.value * (1.0F / value.pdf), value.pdf, false, wi.z < 0.0F};
 }
 
 }  // namespace arris

@@ -2,7 +2,7 @@
 
 #include <cmath>
 #include <cstddef>
-#include <numbers>
+#include <span>
 #include <utility>
 #include <variant>
 
@@ -14,15 +14,8 @@
 namespace arris {
 namespace {
 
-constexpr float kTwoPiSquared = float(2.0 * kPi * kPi);
-
 float relative_luminance(Rgb c) {
   return 0.2126F * c.x + 0.7152F * c.y + 0.0722F * c.z;
-}
-
-int cell_of(float x, int count) {
-  const int cell = int(x * float(count));
-  return cell < count ? cell : count - 1;
 }
 
 // Mean over a cell and its eight neighbours, as bilinear lookups reach that far: none that sees light is left out.
@@ -76,22 +69,6 @@ RowDistribution make_rows(std::span<const double> weights, int columns) {
     }
   }
   return d;
-}
-
-struct CellSample {
-  std::size_t cell;
-  float position;  // 0…1 over the whole row
-};
-
-CellSample sample_row(const RowDistribution& d, std::size_t row, float u) {
-  const std::size_t n = std::size_t(d.columns);
-  const float* cumulative = &d.cumulative[row * (n + 1)];
-  std::size_t i = d.guide[row * n + std::size_t(cell_of(u, d.columns))];
-  while (cumulative[i + 1] <= u && i + 1 < n) {
-    ++i;
-  }
-  const float within = (u - cumulative[i]) / (cumulative[i + 1] - cumulative[i]);
-  return {i, (float(i) + min_of(within, 0x1.fffffep-1F)) / float(n)};
 }
 
 float cell_probability(const RowDistribution& d, std::size_t row, std::size_t cell) {
@@ -206,58 +183,6 @@ EnvironmentMap make_environment_map(int width_px, int height_px, std::vector<Rgb
     }
   }
   return map;
-}
-
-MapPoint map_point(const EnvironmentMap& map, Vec3f wi) {
-  const float x = dot(wi, map.frame.x);
-  const float y = dot(wi, map.frame.y);
-  const float z = clamp_to(dot(wi, map.frame.z), -1.0F, 1.0F);
-  return {turn_of(y, x), angle_of_cosine(z) * std::numbers::inv_pi_v<float>,
-          std::sqrt(max_of(x * x + y * y, 1e-14F))};
-}
-
-Rgb eval_environment_map(const EnvironmentMap& map, std::span<const Rgb> radiance, MapPoint at) {
-  const int w = map.width_px;
-  const int h = map.height_px;
-  const float x = at.u * float(w) - 0.5F;
-  const float y = at.v * float(h) - 0.5F;
-  // Truncation is the floor of x + 1 > 0.
-  const int left = int(x + 1.0F) - 1;
-  const int top = int(y + 1.0F) - 1;
-  const int x0 = left < 0 ? w - 1 : left;
-  const int x1 = left + 1 < w ? left + 1 : 0;
-  const int y0 = top < 0 ? 0 : top;
-  const int y1 = top + 1 < h ? top + 1 : h - 1;
-  const float fx = x - float(left);
-  const float fy = y - float(top);
-  const Rgb* row0 = radiance.data() + std::size_t(y0) * std::size_t(w);
-  const Rgb* row1 = radiance.data() + std::size_t(y1) * std::size_t(w);
-  return (row0[x0] * (1.0F - fx) + row0[x1] * fx) * (1.0F - fy) +
-         (row1[x0] * (1.0F - fx) + row1[x1] * fx) * fy;
-}
-
-float pdf_environment_map(const EnvironmentMap& map, MapPoint at) {
-  const std::size_t cell = std::size_t(cell_of(at.v, map.height_px)) * std::size_t(map.width_px) +
-                           std::size_t(cell_of(at.u, map.width_px));
-  return map.density[cell] / (kTwoPiSquared * at.sin_theta);
-}
-
-EnvironmentMapSample sample_environment_map(const EnvironmentMap& map, Vec2f u) {
-  const CellSample row = sample_row(map.rows, 0, u.y);
-  const CellSample column = sample_row(map.columns, row.cell, u.x);
-  const Vec2f azimuth = unit_circle(column.position);
-  const Vec2f polar = unit_circle(0.5F * row.position);
-  const Vec3f horizontal = map.frame.x * azimuth.x + map.frame.y * azimuth.y;
-  return {horizontal * polar.y + map.frame.z * polar.x,
-          {column.position, row.position, max_of(polar.y, 1e-7F)}};
-}
-
-Vec3f sample_sun(const SunDisc& sun, Vec2f u) {
-  const float below_one = u.x * (1.0F - sun.cos_radius);
-  const float cosine = 1.0F - below_one;
-  const float sine = std::sqrt(below_one * (1.0F + cosine));
-  const Vec2f circle = unit_circle(u.y);
-  return (sun.tangent * circle.x + sun.bitangent * circle.y) * sine + sun.direction * cosine;
 }
 
 }  // namespace arris

@@ -114,123 +114,6 @@ class LightSetBuilder {
   float disc_area_;
 };
 
-// Falls with the square of the distance, which never is zero.
-struct Falloff {
-  Vec3f wi;
-  float distance;
-  float inverse_square;
-};
-Falloff falloff_towards(Vec3f position, Vec3f point) {
-  const Vec3f d = position - point;
-  const float squared = max_of(length_squared(d), 1e-30F);
-  const float distance = std::sqrt(squared);
-  return {d * (1.0F / distance), distance, 1.0F / squared};
-}
-
-LightSample sample_point(const PointEmitter& light, Vec3f point) {
-  const Falloff f = falloff_towards(light.position, point);
-  return {.wi = f.wi,
-          .distance = f.distance,
-          .radiance = light.intensity * f.inverse_square,
-          .pdf = 1.0F,
-          .is_delta = true};
-}
-
-std::optional<LightSample> sample_spot(const SpotEmitter& light, Vec3f point) {
-  const Falloff f = falloff_towards(light.position, point);
-  const float linear = -dot(f.wi, light.axis) * light.cos_scale + light.cos_offset;
-  if (linear <= 0.0F) {
-    return std::nullopt;
-  }
-  const float clamped = min_of(linear, 1.0F);
-  return LightSample{.wi = f.wi,
-                     .distance = f.distance,
-                     .radiance = light.intensity * (f.inverse_square * clamped * clamped),
-                     .pdf = 1.0F,
-                     .is_delta = true};
-}
-
-float pdf_triangle(const TriangleEmitter& light, Vec3f wi, float distance) {
-  const float cos_l = -dot(wi, light.normal);
-  const float facing = light.both_sides ? std::fabs(cos_l) : cos_l;
-  return facing > 0.0F ? distance * distance * light.inverse_area / facing : 0.0F;
-}
-
-std::optional<LightSample> sample_triangle(const TriangleEmitter& light, Vec3f point, Vec2f u) {
-  const float r = std::sqrt(u.x);
-  const Vec2f barycentric{r * (1.0F - u.y), r * u.y};
-  const Vec3f p = light.a + light.edge_b * barycentric.x + light.edge_c * barycentric.y;
-  const Falloff f = falloff_towards(p, point);
-  const float pdf = pdf_triangle(light, f.wi, f.distance);
-  if (!(pdf > 0.0F)) {
-    return std::nullopt;
-  }
-  return LightSample{.wi = f.wi,
-                     .distance = f.distance,
-                     .radiance = light.radiance,
-                     .pdf = pdf,
-                     .barycentric = barycentric};
-}
-
-// Map and sun are one integrand, drawn by a mixture: both count wherever they overlap.
-EnvironmentValue eval_map_and_sun(const LightSet& lights, Vec3f wi, MapPoint at) {
-  const EnvironmentMap& map = lights.environment.map;
-  EnvironmentValue value{eval_environment_map(map, map.radiance, at),
-                         lights.environment_probability * pdf_environment_map(map, at)};
-  for (const SunDisc& sun : lights.environment.suns) {
-    if (is_in_sun(sun, wi)) {
-      value.radiance += sun.radiance;
-      value.pdf += lights.sun_probability / sun.solid_angle;
-    }
-  }
-  return value;
-}
-
-std::optional<LightSample> sample_far(const LightSet& lights, Vec3f wi, MapPoint at) {
-  const EnvironmentValue value = eval_map_and_sun(lights, wi, at);
-  if (!(value.pdf > 0.0F)) {
-    return std::nullopt;
-  }
-  return LightSample{.wi = wi, .radiance = value.radiance, .pdf = value.pdf};
-}
-
-std::optional<LightSample> sample_emitter(const LightSet& lights, Emitter emitter, Vec3f point,
-                                          Vec2f u) {
-  switch (emitter.kind) {
-    case EmitterKind::point:
-      return sample_point(lights.points[emitter.index], point);
-    case EmitterKind::spot:
-      return sample_spot(lights.spots[emitter.index], point);
-    case EmitterKind::directional: {
-      const DirectionalEmitter& light = lights.directionals[emitter.index];
-      return LightSample{
-          .wi = light.wi, .radiance = light.irradiance, .pdf = 1.0F, .is_delta = true};
-    }
-    case EmitterKind::rectangle: {
-      const RectangleEmitter& light = lights.rectangles[emitter.index];
-      const auto sample = sample_rectangle(light, point, u);
-      if (!sample) {
-        return std::nullopt;
-      }
-      return LightSample{.wi = sample->wi,
-                         .distance = sample->distance,
-                         .radiance = light.radiance,
-                         .pdf = sample->pdf};
-    }
-    case EmitterKind::triangle:
-      return sample_triangle(lights.triangles[emitter.index], point, u);
-    case EmitterKind::environment: {
-      const EnvironmentMapSample sample = sample_environment_map(lights.environment.map, u);
-      return sample_far(lights, sample.wi, sample.at);
-    }
-    case EmitterKind::sun: {
-      const Vec3f wi = sample_sun(lights.environment.suns.front(), u);
-      return sample_far(lights, wi, map_point(lights.environment.map, wi));
-    }
-  }
-  return std::nullopt;
-}
-
 }  // namespace
 
 LightSet make_light_set(std::span<const Light> lights, const Environment& environment,
@@ -246,47 +129,6 @@ LightSet make_light_set(std::span<const Light> lights, const Environment& enviro
   return builder.finish();
 }
 
-std::optional<LightSample> sample_light(const LightSet& lights, Vec3f point, float u_select,
-                                        Vec2f u) {
-  if (lights.emitters.empty()) {
-    return std::nullopt;
-  }
-  const std::uint32_t drawn = sample_alias_table(lights.selection, u_select);
-  const Emitter emitter = lights.emitters[drawn];
-  std::optional<LightSample> sample = sample_emitter(lights, emitter, point, u);
-  if (sample) {
-    // Environments have their selection in the mixture's density.
-    const bool is_far =
-        emitter.kind == EmitterKind::environment || emitter.kind == EmitterKind::sun;
-    sample->pdf *= is_far ? 1.0F : lights.selection.probability[drawn];
-    sample->kind = emitter.kind;
-    sample->index = emitter.index;
-  }
-  return sample;
-}
-
-EnvironmentValue eval_environment_with_pdf(const LightSet& lights, Vec3f wi) {
-  const EnvironmentLight& environment = lights.environment;
-  return environment.kind == EnvironmentKind::constant
-             ? EnvironmentValue{environment.constant, 0}
-             : eval_map_and_sun(lights, wi, map_point(environment.map, wi));
-}
-
-Rgb eval_environment(const LightSet& lights, Vec3f wi) {
-  return eval_environment_with_pdf(lights, wi).radiance;
-}
-
-float pdf_environment(const LightSet& lights, Vec3f wi) {
-  return eval_environment_with_pdf(lights, wi).pdf;
-}
-
-Rgb eval_backdrop(const LightSet& lights, Vec3f wi) {
-  const EnvironmentLight& environment = lights.environment;
-  return environment.backdrop.empty() ? eval_environment(lights, wi)
-                                      : eval_environment_map(environment.map, environment.backdrop,
-                                                             map_point(environment.map, wi));
-}
-
 std::optional<AreaLightHit> find_area_light(const LightSet& lights, Vec3f origin, Vec3f dir,
                                             float t_max, RayKind kind) {
   std::optional<AreaLightHit> nearest;
@@ -300,16 +142,6 @@ std::optional<AreaLightHit> find_area_light(const LightSet& lights, Vec3f origin
     }
   }
   return nearest;
-}
-
-float pdf_area_light(const LightSet& lights, std::uint32_t index, Vec3f point, Vec3f wi,
-                     float distance) {
-  return lights.rectangle_probability[index] *
-         pdf_rectangle(lights.rectangles[index], point, wi, distance);
-}
-
-float pdf_emissive_triangle(const LightSet& lights, std::uint32_t index, Vec3f wi, float distance) {
-  return lights.triangle_probability[index] * pdf_triangle(lights.triangles[index], wi, distance);
 }
 
 }  // namespace arris

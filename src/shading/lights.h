@@ -15,6 +15,7 @@
 // Errors     none: the scene is validated before
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 #include <limits>
 #include <optional>
@@ -23,6 +24,7 @@
 
 #include "arris/math.h"
 #include "arris/scene.h"
+#include "base/scalar.h"
 #include "shading/alias_table.h"
 #include "shading/environment.h"
 #include "shading/rectangle_light.h"
@@ -106,26 +108,15 @@ struct LightSample {
   Vec2f barycentric{};      // of b and c, if kind is triangle: where to look up an emission texture
 };
 
-// Nothing if the emitter drawn sends no light to the point. u_select, u in [0, 1).
-std::optional<LightSample> sample_light(const LightSet& lights, Vec3f point, float u_select,
-                                        Vec2f u);
+struct EnvironmentValue {
+  Rgb radiance;
+  float pdf = 0;
+};
 
 // There is something for sample_light() to draw.
 inline bool has_emitters(const LightSet& lights) {
   return !lights.emitters.empty();
 }
-
-// What a ray that leaves the scene sees; sun included.
-Rgb eval_environment(const LightSet& lights, Vec3f wi);
-float pdf_environment(const LightSet& lights, Vec3f wi);
-// Both for the price of one.
-struct EnvironmentValue {
-  Rgb radiance;
-  float pdf = 0;
-};
-EnvironmentValue eval_environment_with_pdf(const LightSet& lights, Vec3f wi);
-// What the camera sees behind the scene: the studio without its lamps, else the environment.
-Rgb eval_backdrop(const LightSet& lights, Vec3f wi);
 
 struct AreaLightHit {
   std::uint32_t index = 0;  // among the area lights, in the scene's order
@@ -141,10 +132,172 @@ inline bool has_area_lights(const LightSet& lights) {
   return !lights.rectangles.empty();
 }
 
+// Falls with the square of the distance, which never is zero.
+struct Falloff {
+  Vec3f wi;
+  float distance;
+  float inverse_square;
+};
+inline Falloff falloff_towards(Vec3f position, Vec3f point) {
+  const Vec3f d = position - point;
+  const float squared = max_of(length_squared(d), 1e-30F);
+  const float distance = std::sqrt(squared);
+  return {d * (1.0F / distance), distance, 1.0F / squared};
+}
+
+inline LightSample sample_point(const PointEmitter& light, Vec3f point) {
+  const Falloff f = falloff_towards(light.position, point);
+  return {.wi = f.wi,
+          .distance = f.distance,
+          .radiance = light.intensity * f.inverse_square,
+          .pdf = 1.0F,
+          .is_delta = true};
+}
+
+inline LightSample sample_spot(const SpotEmitter& light, Vec3f point) {
+  const Falloff f = falloff_towards(light.position, point);
+  const float linear = -dot(f.wi, light.axis) * light.cos_scale + light.cos_offset;
+  if (linear <= 0.0F) {
+    return {};
+  }
+  const float clamped = min_of(linear, 1.0F);
+  return LightSample{.wi = f.wi,
+                     .distance = f.distance,
+                     .radiance = light.intensity * (f.inverse_square * clamped * clamped),
+                     .pdf = 1.0F,
+                     .is_delta = true};
+}
+
+inline float pdf_triangle(const TriangleEmitter& light, Vec3f wi, float distance) {
+  const float cos_l = -dot(wi, light.normal);
+  const float facing = light.both_sides ? std::fabs(cos_l) : cos_l;
+  return facing > 0.0F ? distance * distance * light.inverse_area / facing : 0.0F;
+}
+
+inline LightSample sample_triangle(const TriangleEmitter& light, Vec3f point, Vec2f u) {
+  const float r = std::sqrt(u.x);
+  const Vec2f barycentric{r * (1.0F - u.y), r * u.y};
+  const Vec3f p = light.a + light.edge_b * barycentric.x + light.edge_c * barycentric.y;
+  const Falloff f = falloff_towards(p, point);
+  const float pdf = pdf_triangle(light, f.wi, f.distance);
+  return LightSample{.wi = f.wi,
+                     .distance = f.distance,
+                     .radiance = light.radiance,
+                     .pdf = pdf,
+                     .barycentric = barycentric};
+}
+
+// Map and sun are one integrand, drawn by a mixture: both count wherever they overlap.
+inline EnvironmentValue eval_map_and_sun(const LightSet& lights, Vec3f wi, MapPoint at) {
+  const EnvironmentMap& map = lights.environment.map;
+  EnvironmentValue value{eval_environment_map(map, map.radiance, at),
+                         lights.environment_probability * pdf_environment_map(map, at)};
+  for (const SunDisc& sun : lights.environment.suns) {
+    if (is_in_sun(sun, wi)) {
+      value.radiance += sun.radiance;
+      value.pdf += lights.sun_probability / sun.solid_angle;
+    }
+  }
+  return value;
+}
+
+inline LightSample sample_far(const LightSet& lights, Vec3f wi, MapPoint at) {
+  const EnvironmentValue value = eval_map_and_sun(lights, wi, at);
+  return LightSample{.wi = wi, .radiance = value.radiance, .pdf = value.pdf};
+}
+
+// pdf 0: no light from there.
+inline LightSample sample_emitter(const LightSet& lights, Emitter emitter, Vec3f point, Vec2f u) {
+  switch (emitter.kind) {
+    case EmitterKind::point:
+      return sample_point(lights.points[emitter.index], point);
+    case EmitterKind::spot:
+      return sample_spot(lights.spots[emitter.index], point);
+    case EmitterKind::directional: {
+      const DirectionalEmitter& light = lights.directionals[emitter.index];
+      return LightSample{
+          .wi = light.wi, .radiance = light.irradiance, .pdf = 1.0F, .is_delta = true};
+    }
+    case EmitterKind::rectangle: {
+      const RectangleEmitter& light = lights.rectangles[emitter.index];
+      const auto sample = sample_rectangle(light, point, u);
+      if (!sample) {
+        return {};
+      }
+      return LightSample{.wi = sample->wi,
+                         .distance = sample->distance,
+                         .radiance = light.radiance,
+                         .pdf = sample->pdf};
+    }
+    case EmitterKind::triangle:
+      return sample_triangle(lights.triangles[emitter.index], point, u);
+    case EmitterKind::environment: {
+      const EnvironmentMapSample sample = sample_environment_map(lights.environment.map, u);
+      return sample_far(lights, sample.wi, sample.at);
+    }
+    case EmitterKind::sun: {
+      const Vec3f wi = sample_sun(lights.environment.suns.front(), u);
+      return sample_far(lights, wi, map_point(lights.environment.map, wi));
+    }
+  }
+  return {};
+}
+
+// Nothing if the emitter drawn sends no light to the point. u_select, u in [0, 1).
+inline std::optional<LightSample> sample_light(const LightSet& lights, Vec3f point, float u_select,
+                                               Vec2f u) {
+  if (lights.emitters.empty()) {
+    return std::nullopt;
+  }
+  const std::uint32_t drawn = sample_alias_table(lights.selection, u_select);
+  const Emitter emitter = lights.emitters[drawn];
+  LightSample sample = sample_emitter(lights, emitter, point, u);
+  if (!(sample.pdf > 0.0F)) {
+    return std::nullopt;
+  }
+  // Environments have their selection in the mixture's density.
+  const bool is_far = emitter.kind == EmitterKind::environment || emitter.kind == EmitterKind::sun;
+  sample.pdf *= is_far ? 1.0F : lights.selection.probability[drawn];
+  sample.kind = emitter.kind;
+  sample.index = emitter.index;
+  return sample;
+}
+
+// What a ray that leaves the scene sees, sun included, and with which density it would have been drawn.
+inline EnvironmentValue eval_environment_with_pdf(const LightSet& lights, Vec3f wi) {
+  const EnvironmentLight& environment = lights.environment;
+  return environment.kind == EnvironmentKind::constant
+             ? EnvironmentValue{environment.constant, 0}
+             : eval_map_and_sun(lights, wi, map_point(environment.map, wi));
+}
+
+inline Rgb eval_environment(const LightSet& lights, Vec3f wi) {
+  return eval_environment_with_pdf(lights, wi).radiance;
+}
+
+inline float pdf_environment(const LightSet& lights, Vec3f wi) {
+  return eval_environment_with_pdf(lights, wi).pdf;
+}
+
+// What the camera sees behind the scene: the studio without its lamps, else the environment.
+inline Rgb eval_backdrop(const LightSet& lights, Vec3f wi) {
+  const EnvironmentLight& environment = lights.environment;
+  return environment.backdrop.empty() ? eval_environment(lights, wi)
+                                      : eval_environment_map(environment.map, environment.backdrop,
+                                                             map_point(environment.map, wi));
+}
+
 // wi: unit, hits the rectangle at `distance` from the point.
-float pdf_area_light(const LightSet& lights, std::uint32_t index, Vec3f point, Vec3f wi,
-                     float distance);
+inline float pdf_area_light(const LightSet& lights, std::uint32_t index, Vec3f point, Vec3f wi,
+                            float distance) {
+  return lights.rectangle_probability[index] *
+         pdf_rectangle(lights.rectangles[index], point, wi, distance);
+}
+
 // index: that of the EmissiveTriangle given to make_light_set().
-float pdf_emissive_triangle(const LightSet& lights, std::uint32_t index, Vec3f wi, float distance);
+inline float pdf_emissive_triangle(const LightSet& lights, std::uint32_t index, Vec3f wi,
+                                   float distance) {
+  return lights.triangle_probability[index] * pdf_triangle(lights.triangles[index], wi, distance);
+}
 
 }  // namespace arris

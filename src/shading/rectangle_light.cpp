@@ -6,8 +6,6 @@
 namespace arris {
 namespace {
 
-// Squared distance of the centre over the area, beyond which area samples serve.
-constexpr float kFarRatio = 12.0F;
 // Edges count as orthogonal if their cosine is below this.
 constexpr float kOrthogonalCosine = 1e-4F;
 constexpr float kTwoPi = 2.0F * float(kPi);
@@ -62,15 +60,6 @@ Vec3f sample_spherical_rectangle(const SphericalRectangle& q, Vec2f u) {
   return {xu, clamp_to(yv, q.y0, q.y1), q.z0};
 }
 
-bool is_near(const RectangleEmitter& light, Vec3f point) {
-  const Vec3f to_center = light.corner + (light.edge_u + light.edge_v) * 0.5F - point;
-  return light.orthogonal && length_squared(to_center) < kFarRatio * light.area;
-}
-
-float pdf_by_area(const RectangleEmitter& light, float cos_l, float distance) {
-  return distance * distance / (cos_l * light.area);
-}
-
 }  // namespace
 
 RectangleEmitter make_rectangle_emitter(const AreaLight& light) {
@@ -94,35 +83,21 @@ RectangleEmitter make_rectangle_emitter(const AreaLight& light) {
   return e;
 }
 
-std::optional<RectangleSample> sample_rectangle(const RectangleEmitter& light, Vec3f point,
-                                                Vec2f u) {
-  const float height = -dot(light.corner - point, light.normal);
-  if (!(height > 0.0F)) {
+std::optional<RectangleSample> sample_near_rectangle(const RectangleEmitter& light, Vec3f point,
+                                                     Vec2f u) {
+  const SphericalRectangle q = make_spherical_rectangle(light, point);
+  if (!(q.solid_angle > 0.0F)) {
     return std::nullopt;
   }
-  if (is_near(light, point)) {
-    const SphericalRectangle q = make_spherical_rectangle(light, point);
-    if (q.solid_angle > 0.0F) {
-      const Vec3f p = sample_spherical_rectangle(q, u);
-      const Vec3f d = light.axis_u * p.x + light.axis_v * p.y + light.normal * p.z;
-      const float distance = length(d);
-      return RectangleSample{d * (1.0F / distance), distance, 1.0F / q.solid_angle};
-    }
-  }
-  const Vec3f d = light.corner + light.edge_u * u.x + light.edge_v * u.y - point;
+  const Vec3f p = sample_spherical_rectangle(q, u);
+  const Vec3f d = light.axis_u * p.x + light.axis_v * p.y + light.normal * p.z;
   const float distance = length(d);
-  return RectangleSample{d * (1.0F / distance), distance,
-                         pdf_by_area(light, height / distance, distance)};
+  return RectangleSample{d * (1.0F / distance), distance, 1.0F / q.solid_angle};
 }
 
-float pdf_rectangle(const RectangleEmitter& light, Vec3f point, Vec3f wi, float distance) {
-  if (is_near(light, point)) {
-    const SphericalRectangle q = make_spherical_rectangle(light, point);
-    if (q.solid_angle > 0.0F) {
-      return 1.0F / q.solid_angle;
-    }
-  }
-  return pdf_by_area(light, -dot(wi, light.normal), distance);
+float pdf_near_rectangle(const RectangleEmitter& light, Vec3f point) {
+  const SphericalRectangle q = make_spherical_rectangle(light, point);
+  return q.solid_angle > 0.0F ? 1.0F / q.solid_angle : 0.0F;
 }
 
 }  // namespace arris

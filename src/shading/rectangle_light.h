@@ -34,12 +34,42 @@ struct RectangleSample {
   float pdf = 0;
 };
 
+// By solid angle; nothing, and 0, if that is too small for float.
+std::optional<RectangleSample> sample_near_rectangle(const RectangleEmitter& light, Vec3f point,
+                                                     Vec2f u);
+float pdf_near_rectangle(const RectangleEmitter& light, Vec3f point);
+
+// Squared distance of the centre over the area, beyond which area samples serve: their density varies
+// by a sixth there.
+inline constexpr float kFarRatio = 4.0F;
+
+inline bool is_near(const RectangleEmitter& light, Vec3f point) {
+  const Vec3f to_center = light.corner + (light.edge_u + light.edge_v) * 0.5F - point;
+  return light.orthogonal && length_squared(to_center) < kFarRatio * light.area;
+}
+
 // Nothing if the point is behind the rectangle or in its plane.
-std::optional<RectangleSample> sample_rectangle(const RectangleEmitter& light, Vec3f point,
-                                                Vec2f u);
+inline std::optional<RectangleSample> sample_rectangle(const RectangleEmitter& light, Vec3f point,
+                                                       Vec2f u) {
+  const float height = -dot(light.corner - point, light.normal);
+  if (!(height > 0.0F)) {
+    return std::nullopt;
+  }
+  if (is_near(light, point)) {
+    return sample_near_rectangle(light, point, u);
+  }
+  const Vec3f d = light.corner + light.edge_u * u.x + light.edge_v * u.y - point;
+  const float squared = length_squared(d);
+  const float distance = std::sqrt(squared);
+  return RectangleSample{d * (1.0F / distance), distance,
+                         squared * distance / (height * light.area)};
+}
 
 // wi: unit, hits the rectangle's front at `distance` from the point.
-float pdf_rectangle(const RectangleEmitter& light, Vec3f point, Vec3f wi, float distance);
+inline float pdf_rectangle(const RectangleEmitter& light, Vec3f point, Vec3f wi, float distance) {
+  return is_near(light, point) ? pdf_near_rectangle(light, point)
+                               : distance * distance / (-dot(wi, light.normal) * light.area);
+}
 
 // Distance along dir (in units of its length) to the front of the rectangle, if within (0, t_max).
 inline std::optional<float> intersect_rectangle(const RectangleEmitter& light, Vec3f origin,
