@@ -87,6 +87,26 @@ CommandRow render_row() {
       run_render};
 }
 
+CommandRow info_row() {
+  return {"info",
+          "INPUT",
+          1,
+          1,
+          "say what is in a model or scene",
+          "Prints for each object its triangles, its edges by kind, whether it is closed and "
+          "convex, and what "
+          "rounding would do with it.",
+          {rounding_group("auto"),
+           {"Output",
+            {{"--json", "", "as JSON, with all digits"},
+             {"--threads", "N", "default: all"},
+             {"--quiet", "", "print errors only besides the report"},
+             kHelp}}},
+          {{"arris info bracket.stl", "a report to read"},
+           {"arris info bracket.stl --json --round 0.5", "for programs, with a radius of 0.5"}},
+          run_info};
+}
+
 CommandRow shoot_row() {
   return {
       "shoot",
@@ -154,7 +174,7 @@ CommandRow compare_row() {
 }  // namespace
 
 std::span<const CommandRow> commands() {
-  static const std::vector<CommandRow> kCommands{render_row(), shoot_row(), merge_row(),
+  static const std::vector<CommandRow> kCommands{render_row(), info_row(), shoot_row(), merge_row(),
                                                  compare_row()};
   return kCommands;
 }

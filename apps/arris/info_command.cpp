@@ -1,0 +1,136 @@
+#include "arris/inspect.h"
+
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+
+#include "arris/command_line.h"
+#include "arris/commands.h"
+#include "arris/console.h"
+#include "arris/io.h"
+#include "arris/render.h"
+#include "arris/values.h"
+
+namespace arris::program {
+namespace {
+
+struct Findings {
+  SceneReport scene;
+  PrepareStats prepare;
+};
+
+const RoundingSummary* find_summary(const Findings& findings, const std::string& object) {
+  for (const RoundingSummary& summary : findings.prepare.rounding) {
+    if (summary.object == object) return &summary;
+  }
+  return nullptr;
+}
+
+nlohmann::ordered_json to_json(Vec3d v) {
+  return {v.x, v.y, v.z};
+}
+
+nlohmann::ordered_json to_json(const EdgeCounts& e) {
+  return {{"convex", e.convex}, {"concave", e.concave},   {"smooth", e.smooth},
+          {"flat", e.flat},     {"boundary", e.boundary}, {"nonmanifold", e.nonmanifold}};
+}
+
+nlohmann::ordered_json to_json(const RoundingSummary& r) {
+  return {{"radius", r.radius}, {"edges", r.edges}, {"corners", r.corners}, {"notes", r.notes}};
+}
+
+nlohmann::ordered_json to_json(const ObjectReport& o, const RoundingSummary* rounding) {
+  nlohmann::ordered_json json{
+      {"name", o.name},     {"triangles", o.triangles},  {"vertices", o.vertices},
+      {"shells", o.shells}, {"edges", to_json(o.edges)}, {"closed", o.closed},
+      {"convex", o.convex}};
+  json["inradius"] = o.inradius ? nlohmann::ordered_json(*o.inradius) : nullptr;
+  json["bounds"] = {{"min", to_json(o.bounds_min)}, {"max", to_json(o.bounds_max)}};
+  json["degenerate_triangles"] = o.degenerate_triangles;
+  json["rounding"] = rounding != nullptr ? to_json(*rounding) : nlohmann::ordered_json(nullptr);
+  return json;
+}
+
+void print_json(const Findings& findings) {
+  const SceneReport& scene = findings.scene;
+  nlohmann::ordered_json json{
+      {"triangles", scene.triangles},
+      {"bounds", {{"min", to_json(scene.bounds_min)}, {"max", to_json(scene.bounds_max)}}},
+      {"objects", nlohmann::ordered_json::array()}};
+  for (const ObjectReport& object : scene.objects) {
+    json["objects"].push_back(to_json(object, find_summary(findings, object.name)));
+  }
+  const auto replace = nlohmann::ordered_json::error_handler_t::replace;
+  fmt::print("{}\n", json.dump(2, ' ', false, replace));
+}
+
+std::string format_bounds(Vec3d lower, Vec3d upper) {
+  const Vec3d size = upper - lower;
+  return fmt::format(
+      "{:.6g} x {:.6g} x {:.6g}, from ({:.6g}, {:.6g}, {:.6g}) to ({:.6g}, {:.6g}, {:.6g})", size.x,
+      size.y, size.z, lower.x, lower.y, lower.z, upper.x, upper.y, upper.z);
+}
+
+void print_object(const ObjectReport& object, const RoundingSummary* rounding) {
+  const EdgeCounts& e = object.edges;
+  fmt::print("\n{}\n", object.name.empty() ? "(no name)" : object.name);
+  fmt::print("  triangles   {} on {} vertices, in {} {}\n", object.triangles, object.vertices,
+             object.shells, object.shells == 1 ? "piece" : "pieces");
+  if (object.degenerate_triangles > 0) {
+    fmt::print("  degenerate  {} triangles without area\n", object.degenerate_triangles);
+  }
+  fmt::print("  edges       {} convex, {} concave, {} smooth, {} flat", e.convex, e.concave,
+             e.smooth, e.flat);
+  if (e.boundary > 0) fmt::print(", {} boundary", e.boundary);
+  if (e.nonmanifold > 0) fmt::print(", {} non-manifold", e.nonmanifold);
+  fmt::print("\n  shape       {}, {}", object.closed ? "closed" : "not closed",
+             object.convex ? "convex" : "not convex");
+  if (object.inradius) fmt::print(", inradius {:.6g}", *object.inradius);
+  fmt::print("\n  size        {}\n", format_bounds(object.bounds_min, object.bounds_max));
+  if (rounding == nullptr) return;
+  if (rounding->radius > 0) {
+    fmt::print("  rounding    radius {:.4g}: {} edges, {} corners\n", rounding->radius,
+               rounding->edges, rounding->corners);
+  } else {
+    fmt::print("  rounding    none\n");
+  }
+  for (const std::string& note : rounding->notes) fmt::print("              {}\n", note);
+}
+
+void print_report(const Findings& findings, const std::string& input) {
+  const SceneReport& scene = findings.scene;
+  fmt::print("{}: {} triangles in {} {}\n", input, scene.triangles, scene.objects.size(),
+             scene.objects.size() == 1 ? "object" : "objects");
+  fmt::print("size {}\n", format_bounds(scene.bounds_min, scene.bounds_max));
+  for (const ObjectReport& object : scene.objects) {
+    print_object(object, find_summary(findings, object.name));
+  }
+}
+
+}  // namespace
+
+int run_info(const Arguments& arguments) {
+  const std::string& input = arguments.positionals[0];
+  const int threads = threads_of(arguments);
+  with_rounding_options({}, arguments);  // bad values before long loading
+  Scene scene = load_scene(input);
+  Console console(arguments);
+  for (const std::string& note : scene.notes) console.report(note);
+  if (!scene.rounding) {
+    RoundingSettings automatic;
+    automatic.method = RoundMethod::exact;
+    scene.rounding = automatic;
+  }
+  apply_rounding_options(scene, arguments);
+  Findings findings;
+  findings.scene = inspect_scene(scene, scene.rounding->min_angle);
+  findings.prepare = prepare_stats(*prepare_scene(std::move(scene), {.threads = threads}));
+  if (arguments.has("--json")) {
+    print_json(findings);
+  } else {
+    print_report(findings, input);
+  }
+  return 0;
+}
+
+}  // namespace arris::program

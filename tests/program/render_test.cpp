@@ -1,0 +1,262 @@
+// arris render and arris merge, end to end.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "arris/io.h"
+#include "io/picture_file.h"
+#include "io/render_part.h"
+#include "program/run_program.h"
+
+namespace arris {
+namespace {
+
+using test::Outcome;
+using test::Workplace;
+using testing::HasSubstr;
+
+constexpr const char* kSmall = " --size 40x30 --spp 4 --quiet ";
+
+TEST(Render, one_command_makes_a_framed_picture_on_a_ground) {
+  const Workplace place;
+  const Outcome run = place.arris("render cube.stl -o a.png --size 64x36 --spp 8");
+  ASSERT_EQ(run.code, 0) << run.err;
+  EXPECT_EQ(run.out, "");
+  EXPECT_THAT(run.err, HasSubstr("a.png: 64 x 36 pixels, samples 0..8"));
+  const Image image = load_picture(place / "a.png").color;
+  ASSERT_EQ(image.width_px, 64);
+  ASSERT_EQ(image.height_px, 36);
+  // The model is in the middle and darker than the ground around it, which is light everywhere.
+  EXPECT_LT(image.at(32, 18, 1), 0.8F * image.at(2, 2, 1));
+  for (const int x : {1, 62}) {
+    for (const int y : {1, 34}) EXPECT_GT(image.at(x, y, 1), 0.4F);
+  }
+}
+
+TEST(Render, says_which_radius_it_chose) {
+  const Outcome run = Workplace().arris("render cube.stl -o a.png --size 64x36 --spp 1");
+  EXPECT_THAT(run.err, HasSubstr("rounded 12 edges and 8 corners, radius "));
+  EXPECT_THAT(run.err, HasSubstr("automatic"));
+}
+
+TEST(Render, every_format_holds_the_picture) {
+  const Workplace place;
+  for (const char* name : {"a.png", "a.jpg", "a.exr", "a.pfm"}) {
+    ASSERT_EQ(place.arris(std::string("render cube.stl") + kSmall + "-o " + name).code, 0) << name;
+    EXPECT_EQ(load_picture(place / name).color.width_px, 40) << name;
+  }
+  ASSERT_EQ(place.shell(std::string("arris render cube.stl") + kSmall + "-o - > b.png").code, 0);
+  EXPECT_EQ(place.read("b.png"), place.read("a.png"));
+  EXPECT_EQ(place.arris("compare a.exr a.pfm --max-rmse 0").code, 0);
+}
+
+TEST(Render, layers_are_part_of_exr_and_beside_png) {
+  const Workplace place;
+  ASSERT_EQ(
+      place.arris(std::string("render cube.stl") + kSmall + "-o a.exr --aov depth,normal,object")
+          .code,
+      0);
+  const Picture picture = load_picture(place / "a.exr");
+  ASSERT_EQ(picture.layers.size(), 3U);
+  ASSERT_EQ(place.arris(std::string("render cube.stl") + kSmall + "-o b.png --aov depth").code, 0);
+  EXPECT_GT(load_picture(place / "b.depth.pfm").color.at(20, 15, 0), 0.0F);
+}
+
+TEST(Render, bytes_do_not_depend_on_the_number_of_threads) {
+  const Workplace place;
+  for (const char* name : {".png", ".exr"}) {
+    for (const char* threads : {"1", "2", "3"}) {
+      ASSERT_EQ(place
+                    .arris(std::string("render cube.stl") + kSmall + "--threads " + threads +
+                           " -o t" + threads + name)
+                    .code,
+                0);
+    }
+    EXPECT_EQ(place.read(std::string("t1") + name), place.read(std::string("t2") + name));
+    EXPECT_EQ(place.read(std::string("t1") + name), place.read(std::string("t3") + name));
+  }
+}
+
+TEST(Render, the_seed_changes_the_noise) {
+  const Workplace place;
+  ASSERT_EQ(place.arris(std::string("render cube.stl") + kSmall + "-o a.pfm").code, 0);
+  ASSERT_EQ(place.arris(std::string("render cube.stl") + kSmall + "--seed 1 -o b.pfm").code, 0);
+  EXPECT_NE(place.read("a.pfm"), place.read("b.pfm"));
+}
+
+TEST(Render, options_change_what_they_name) {
+  const Workplace place;
+  const auto render = [&](const std::string& options) {
+    const Outcome run =
+        place.arris(std::string("render cube.stl") + kSmall + "-o x.pfm " + options);
+    EXPECT_EQ(run.code, 0) << options << run.err;
+    return place.read("x.pfm");
+  };
+  const std::string plain = render("");
+  for (const char* options :
+       {"--round none", "--round 0.4", "--round 30%", "--round 0.4 --round-method shader",
+        "--material brass", "--lighting sky", "--lighting white", "--ground off", "--fov 20",
+        "--camera-position 9,9,9", "--camera-target 0,0,0", "--camera-up 0,1,0", "--max-depth 1"}) {
+    EXPECT_NE(render(options), plain) << options;
+  }
+  EXPECT_EQ(render("--exposure 2"), plain) << "linear files know no exposure";
+  EXPECT_EQ(render("--round none --round-edges both"), render("--round none"));
+}
+
+TEST(Render, a_radius_that_does_not_fit_is_an_error_that_names_object_and_limit) {
+  const Outcome run = Workplace().arris("render cube.stl -o a.png --size 8x8 --spp 1 --round 1.5");
+  EXPECT_EQ(run.code, 2);
+  EXPECT_THAT(run.err, HasSubstr("cube"));
+  EXPECT_THAT(run.err, HasSubstr("1.5"));
+}
+
+TEST(Render, stats_have_their_keys) {
+  const Workplace place;
+  const Outcome run = place.arris(std::string("render cube.stl") + kSmall + "-o a.png --stats -");
+  ASSERT_EQ(run.code, 0) << run.err;
+  const nlohmann::json stats = nlohmann::json::parse(run.out);
+  for (const char* key : {"load", "build", "round", "render", "write"}) {
+    EXPECT_GE(stats["seconds"][key].get<double>(), 0) << key;
+  }
+  EXPECT_EQ(stats["rays"]["camera"].get<int>(), 40 * 30 * 4);
+  EXPECT_GE(stats["rays"]["total"].get<int>(), 40 * 30 * 4);
+  EXPECT_GE(stats["rays"]["rounded_fraction"].get<double>(), 0);
+  EXPECT_LE(stats["rays"]["rounded_fraction"].get<double>(), 1);
+  for (const char* key : {"geometry", "rounding", "peak_rss"}) {
+    EXPECT_GE(stats["memory"][key].get<double>(), 0) << key;
+  }
+  EXPECT_EQ(stats["triangles"].get<int>(), 12) << "the ground is not the model's";
+  EXPECT_EQ(stats["rounded_edges"].get<int>(), 12);
+  EXPECT_EQ(stats["rounded_corners"].get<int>(), 8);
+  EXPECT_EQ(stats.size(), 6U);
+}
+
+// ---- parts
+
+constexpr const char* kPart = "render cube.stl --size 40x30 --quiet --aov depth,normal,object ";
+
+TEST(Merge, parts_make_the_whole) {
+  const Workplace place;
+  ASSERT_EQ(place.arris(std::string(kPart) + "--spp 12 -o whole.exr").code, 0);
+  ASSERT_EQ(place.arris(std::string(kPart) + "--samples 0..5 -o a.exr").code, 0);
+  ASSERT_EQ(place.arris(std::string(kPart) + "--samples 5..6 -o b.exr").code, 0);
+  ASSERT_EQ(place.arris(std::string(kPart) + "--samples 6..12 -o c.exr").code, 0);
+  const Outcome run = place.arris("merge c.exr a.exr b.exr -o joined.exr");
+  ASSERT_EQ(run.code, 0) << run.err;
+  EXPECT_EQ(run.err, "joined.exr: samples 0..12\n");
+  const PictureFile whole = load_picture_file(place / "whole.exr");
+  const PictureFile joined = load_picture_file(place / "joined.exr");
+  ASSERT_EQ(joined.picture.layers.size(), 3U);
+  const auto expect_near = [](const Image& a, const Image& b, const std::string& name) {
+    ASSERT_EQ(a.values.size(), b.values.size());
+    for (std::size_t i = 0; i < a.values.size(); ++i) {
+      ASSERT_NEAR(a.values[i], b.values[i], 2e-6F * (1 + std::abs(a.values[i]))) << name << i;
+    }
+  };
+  expect_near(joined.picture.color, whole.picture.color, "color");
+  for (std::size_t i = 0; i < 3; ++i) {
+    expect_near(joined.picture.layers[i].image, whole.picture.layers[i].image,
+                whole.picture.layers[i].name);
+  }
+  EXPECT_EQ(joined.attributes, whole.attributes);
+}
+
+TEST(Merge, refuses_parts_that_do_not_belong_together) {
+  const Workplace place;
+  const std::string part = "render cube.stl --size 16x12 --quiet ";
+  ASSERT_EQ(place.arris(part + "--samples 0..4 -o a.exr").code, 0);
+  ASSERT_EQ(place.arris(part + "--samples 3..6 -o overlap.exr").code, 0);
+  ASSERT_EQ(place.arris(part + "--samples 4..6 --seed 3 -o seed.exr").code, 0);
+  ASSERT_EQ(place.arris(part + "--samples 4..6 --material brass -o scene.exr").code, 0);
+  ASSERT_EQ(place.arris(part + "--samples 4..6 --aov depth -o layers.exr").code, 0);
+  ASSERT_EQ(place.arris(part + "--samples 4..6 --round none -o sharp.exr").code, 0);
+  const auto error = [&](const std::string& other) {
+    const Outcome run = place.arris("merge a.exr " + other + " -o c.exr");
+    EXPECT_EQ(run.code, 2);
+    EXPECT_FALSE(std::filesystem::exists(place / "c.exr"));
+    return run.err;
+  };
+  EXPECT_EQ(error("overlap.exr"),
+            "arris: overlap.exr: holds the samples 3..4 that are also in a.exr\n");
+  EXPECT_THAT(error("a.exr"), HasSubstr("holds the samples 0..4 that are also in a.exr"));
+  EXPECT_THAT(error("seed.exr"), HasSubstr("seed.exr: has seed 3, not 0"));
+  EXPECT_THAT(error("scene.exr"), HasSubstr("shows another scene"));
+  EXPECT_THAT(error("sharp.exr"), HasSubstr("shows another scene"));
+  EXPECT_THAT(error("layers.exr"), HasSubstr("layers.exr: has 1 layers, the part before 0"));
+  ASSERT_EQ(place.arris(part + "--samples 4..6 -o p.png").code, 0);
+  EXPECT_THAT(error("p.png"), HasSubstr("p.png: is no part of a render"));
+}
+
+// ---- breaks
+
+TEST(Checkpoint, going_on_gives_the_same_bytes) {
+  const Workplace place;
+  ASSERT_EQ(place.arris(std::string(kPart) + "--spp 14 -o whole.exr").code, 0);
+  ASSERT_EQ(place.arris(std::string(kPart) + "--spp 9 --checkpoint c.exr -o part.exr").code, 0);
+  ASSERT_EQ(place.arris(std::string(kPart) + "--spp 14 --checkpoint c.exr -o resumed.exr").code, 0);
+  EXPECT_EQ(place.read("resumed.exr"), place.read("whole.exr"));
+  EXPECT_NE(place.read("part.exr"), place.read("whole.exr"));
+}
+
+TEST(Checkpoint, of_another_render_is_refused_and_kept) {
+  const Workplace place;
+  ASSERT_EQ(place.arris(std::string(kPart) + "--spp 4 --checkpoint c.exr -o a.exr").code, 0);
+  const std::string before = place.read("c.exr");
+  for (const char* other : {"--seed 4", "--fov 50", "--aov depth"}) {
+    const Outcome run = place.arris(std::string("render cube.stl --size 40x30 --quiet --spp 8 ") +
+                                    other + " --checkpoint c.exr -o b.exr");
+    EXPECT_EQ(run.code, 2) << other;
+    EXPECT_THAT(run.err, HasSubstr("c.exr: ")) << other;
+    EXPECT_THAT(run.err, HasSubstr("delete it or name another file")) << other;
+  }
+  EXPECT_EQ(place.read("c.exr"), before);
+}
+
+// Renders without end until a signal comes; the shell waits for it.
+std::string signalled(const std::string& signal, const std::string& options) {
+  return "'" ARRIS_BINARY_DIR "/arris' render cube.stl --size 40x30 --spp 16000000 " + options +
+         " & pid=$!; sleep 1.5; kill -" + signal + " $pid; wait $pid";
+}
+
+TEST(Interrupted, keeps_the_samples_made_so_far) {
+  const Workplace place;
+  for (const char* signal : {"INT", "TERM"}) {
+    // Shells start background jobs with SIGINT ignored; TERM is the same request.
+    const Outcome run = place.shell("trap - INT; " + signalled(signal, "-o a.exr"));
+    if (std::string_view(signal) == "INT" && run.code == -1) continue;
+    EXPECT_EQ(run.code, 1) << run.err;
+    EXPECT_THAT(run.err, HasSubstr("arris: stopped; the picture holds samples 0.."));
+    const PictureFile file = load_picture_file(place / "a.exr");
+    EXPECT_EQ(file.picture.color.width_px, 40);
+    EXPECT_GT(sample_count(render_part_of(file, "a.exr")), 0U);
+  }
+}
+
+TEST(Interrupted, a_part_and_its_rest_make_the_whole) {
+  const Workplace place;
+  const Outcome run = place.shell(signalled("TERM", "--quiet --checkpoint c.exr -o a.exr"));
+  EXPECT_EQ(run.code, 1);
+  const RenderPart part = render_part_of(load_picture_file(place / "a.exr"), "a.exr");
+  const RenderPart saved = render_part_of(load_picture_file(place / "c.exr"), "c.exr");
+  EXPECT_LE(saved.samples[0].last, part.samples[0].last);
+  EXPECT_GT(saved.samples[0].last + 4, part.samples[0].last);
+}
+
+TEST(Interrupted, killed_at_once_leaves_the_old_file) {
+  const Workplace place;
+  test::write_text(place / "a.png", "old");
+  const Outcome run = place.shell(signalled("KILL", "--quiet -o a.png"));
+  EXPECT_NE(run.code, 0);
+  EXPECT_EQ(place.read("a.png"), "old");
+}
+
+TEST(Interrupted, a_time_limit_is_no_failure) {
+  const Workplace place;
+  const Outcome run = place.arris("render cube.stl --size 40x30 --time 0.3 -o a.exr");
+  EXPECT_EQ(run.code, 0) << run.err;
+  EXPECT_GT(sample_count(render_part_of(load_picture_file(place / "a.exr"), "a.exr")), 0U);
+}
+
+}  // namespace
+}  // namespace arris
