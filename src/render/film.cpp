@@ -49,7 +49,6 @@ Film::Film(int width_px, int height_px, const std::vector<std::string>& layers)
   albedo_.resize(size_of("albedo"));
   normal_.resize(size_of("normal"));
   depth_.resize(size_of("depth"));
-  depth_hits_.resize(depth_.size());
   rounded_.resize(size_of("rounded"));
   object_.resize(size_of("object"));
   object_known_.resize(object_.size());
@@ -63,8 +62,8 @@ void Film::add_layers(std::size_t pixel, const FirstHit& first) {
     normal_[pixel] += Vec3d(first.normal);
   }
   if (!depth_.empty() && first.hit) {
-    depth_[pixel] += double(first.depth);
-    ++depth_hits_[pixel];
+    const float nearest = depth_[pixel];
+    depth_[pixel] = nearest > 0 ? std::min(nearest, first.depth) : first.depth;
   }
   if (!rounded_.empty()) {
     rounded_[pixel] += first.rounded ? 1 : 0;
@@ -83,9 +82,8 @@ Image Film::layer(const std::string& name, double scale) const {
     return make_image(width_px_, height_px_, normal_, scale);
   }
   if (name == "depth") {
-    return make_gray_image(width_px_, height_px_, depth_.size(), [&](std::size_t i) {
-      return depth_hits_[i] > 0 ? depth_[i] / depth_hits_[i] : 0.0;
-    });
+    return make_gray_image(width_px_, height_px_, depth_.size(),
+                           [&](std::size_t i) { return depth_[i]; });
   }
   if (name == "object") {
     return make_gray_image(width_px_, height_px_, object_.size(),

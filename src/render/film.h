@@ -40,8 +40,8 @@ class Film {
   // Call for a pixel's samples in order: "object" is what the first one saw.
   void add_layers(std::size_t pixel, const FirstHit& first);
 
-  // Means over `samples` samples. "depth" is the mean over the samples that hit something and 0 where none
-  // did; "normal" and "albedo" count a miss as 0.
+  // Means over `samples` samples; "normal" and "albedo" count a miss as 0. "depth" is that of the nearest
+  // surface seen, 0 where there is none: so parts of a render can be joined (image/picture_sum.h).
   [[nodiscard]] Picture picture(std::uint32_t samples,
                                 const std::vector<std::string>& layers) const;
 
@@ -52,8 +52,9 @@ class Film {
   bool has_layers_;
   std::vector<Vec3d> color_;
   std::vector<Vec3d> albedo_, normal_;  // empty unless asked for
-  std::vector<double> depth_, rounded_;
-  std::vector<std::uint32_t> depth_hits_, object_;
+  std::vector<double> rounded_;
+  std::vector<float> depth_;  // 0: nothing hit
+  std::vector<std::uint32_t> object_;
   std::vector<std::uint8_t> object_known_;
 };
 

@@ -47,7 +47,7 @@ TEST(Render, every_format_holds_the_picture) {
     EXPECT_EQ(load_picture(place / name).color.width_px, 40) << name;
   }
   ASSERT_EQ(place.shell(std::string("arris render cube.stl") + kSmall + "-o - > b.png").code, 0);
-  EXPECT_EQ(place.read("b.png"), place.read("a.png"));
+  EXPECT_TRUE(place.read("b.png") == place.read("a.png"));
   EXPECT_EQ(place.arris("compare a.exr a.pfm --max-rmse 0").code, 0);
 }
 
@@ -73,8 +73,8 @@ TEST(Render, bytes_do_not_depend_on_the_number_of_threads) {
                     .code,
                 0);
     }
-    EXPECT_EQ(place.read(std::string("t1") + name), place.read(std::string("t2") + name));
-    EXPECT_EQ(place.read(std::string("t1") + name), place.read(std::string("t3") + name));
+    EXPECT_TRUE(place.read(std::string("t1") + name) == place.read(std::string("t2") + name));
+    EXPECT_TRUE(place.read(std::string("t1") + name) == place.read(std::string("t3") + name));
   }
 }
 
@@ -82,7 +82,7 @@ TEST(Render, the_seed_changes_the_noise) {
   const Workplace place;
   ASSERT_EQ(place.arris(std::string("render cube.stl") + kSmall + "-o a.pfm").code, 0);
   ASSERT_EQ(place.arris(std::string("render cube.stl") + kSmall + "--seed 1 -o b.pfm").code, 0);
-  EXPECT_NE(place.read("a.pfm"), place.read("b.pfm"));
+  EXPECT_TRUE(place.read("a.pfm") != place.read("b.pfm"));
 }
 
 TEST(Render, options_change_what_they_name) {
@@ -95,13 +95,13 @@ TEST(Render, options_change_what_they_name) {
   };
   const std::string plain = render("");
   for (const char* options :
-       {"--round none", "--round 0.4", "--round 30%", "--round 0.4 --round-method shader",
+       {"--round none", "--round 0.4", "--round 20%", "--round 0.4 --round-method shader",
         "--material brass", "--lighting sky", "--lighting white", "--ground off", "--fov 20",
         "--camera-position 9,9,9", "--camera-target 0,0,0", "--camera-up 0,1,0", "--max-depth 1"}) {
-    EXPECT_NE(render(options), plain) << options;
+    EXPECT_TRUE(render(options) != plain) << options;
   }
-  EXPECT_EQ(render("--exposure 2"), plain) << "linear files know no exposure";
-  EXPECT_EQ(render("--round none --round-edges both"), render("--round none"));
+  EXPECT_TRUE(render("--exposure 2") == plain) << "linear files know no exposure";
+  EXPECT_TRUE(render("--round none --round-edges both") == render("--round none"));
 }
 
 TEST(Render, a_radius_that_does_not_fit_is_an_error_that_names_object_and_limit) {
@@ -195,8 +195,8 @@ TEST(Checkpoint, going_on_gives_the_same_bytes) {
   ASSERT_EQ(place.arris(std::string(kPart) + "--spp 14 -o whole.exr").code, 0);
   ASSERT_EQ(place.arris(std::string(kPart) + "--spp 9 --checkpoint c.exr -o part.exr").code, 0);
   ASSERT_EQ(place.arris(std::string(kPart) + "--spp 14 --checkpoint c.exr -o resumed.exr").code, 0);
-  EXPECT_EQ(place.read("resumed.exr"), place.read("whole.exr"));
-  EXPECT_NE(place.read("part.exr"), place.read("whole.exr"));
+  EXPECT_TRUE(place.read("resumed.exr") == place.read("whole.exr"));
+  EXPECT_TRUE(place.read("part.exr") != place.read("whole.exr"));
 }
 
 TEST(Checkpoint, of_another_render_is_refused_and_kept) {
@@ -210,7 +210,7 @@ TEST(Checkpoint, of_another_render_is_refused_and_kept) {
     EXPECT_THAT(run.err, HasSubstr("c.exr: ")) << other;
     EXPECT_THAT(run.err, HasSubstr("delete it or name another file")) << other;
   }
-  EXPECT_EQ(place.read("c.exr"), before);
+  EXPECT_TRUE(place.read("c.exr") == before);
 }
 
 // Renders without end until a signal comes; the shell waits for it.
