@@ -87,13 +87,13 @@ void print_object(const ObjectReport& object, const RoundingSummary* rounding) {
              object.convex ? "convex" : "not convex");
   if (object.inradius) fmt::print(", inradius {:.6g}", *object.inradius);
   fmt::print("\n  size        {}\n", format_bounds(object.bounds_min, object.bounds_max));
-  if (rounding == nullptr) return;
-  if (rounding->radius > 0) {
+  if (rounding == nullptr || rounding->radius == 0) {
+    fmt::print("  rounding    none\n");
+  } else {
     fmt::print("  rounding    radius {:.4g}: {} edges, {} corners\n", rounding->radius,
                rounding->edges, rounding->corners);
-  } else {
-    fmt::print("  rounding    none\n");
   }
+  if (rounding == nullptr) return;
   for (const std::string& note : rounding->notes) fmt::print("              {}\n", note);
 }
 
