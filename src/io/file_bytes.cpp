@@ -113,6 +113,7 @@ std::vector<std::uint8_t> read_file_bytes(const fs::path& path, std::uint64_t ma
     if (n > max_bytes) fail("is larger than the limit of " + std::to_string(max_bytes) + " bytes");
   };
   if (!error) check_size(size);
+  bytes.reserve(error ? 0 : std::size_t(size) + 1);
   bytes.resize(error ? 0 : std::size_t(size));
   // One byte more than expected, so that the end of file is seen; pipes have no size and grow in
   // steps.
