@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# demo.sh — installs what is missing, builds Arris and renders examples/models to out/: each model
-# with its edges rounded by the automatic radius, as `arris render MODEL -o PICTURE` does.
+# demo.sh — installs what is missing, builds Arris and renders examples/models/keypad.obj to out/, once
+# with its edges rounded, as `arris render keypad.obj -o keypad.png` does, and once as the mesh is.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
@@ -8,8 +8,7 @@ scripts/install-deps.sh
 cmake --preset release
 cmake --build --preset release --target arris_program
 mkdir -p out
-arris=build/release/arris
 start=$SECONDS
-"$arris" render examples/models/keypad.obj -o out/keypad.png
-"$arris" render examples/models/keypad.obj --round none -o out/keypad_sharp.png
+build/release/arris render examples/models/keypad.obj -o out/keypad.png --spp 32
+build/release/arris render examples/models/keypad.obj -o out/keypad_sharp.png --spp 32 --round none
 echo "demo.sh: rendered out/keypad.png and out/keypad_sharp.png in $((SECONDS - start)) s"

@@ -86,7 +86,7 @@ class ElementReader {
 };
 
 // Throws Error if the accessor's type is another or its elements end outside the buffer.
-ElementReader make_element_reader(const GltfSource& source, std::uint32_t accessor,
+ElementReader make_element_reader(const GltfSource& source, std::uint32_t index,
                                   GltfElement wanted);
 
 }  // namespace arris
