@@ -19,7 +19,8 @@ using testing::HasSubstr;
 
 const std::string kOff = "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n";
 const std::string kPly =
-    "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
+    "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float "
+    "z\n"
     "element face 1\nproperty list uchar int vertex_indices\nend_header\n"
     "0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n";
 const std::string kObj = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
@@ -53,15 +54,18 @@ TEST_F(LoadScene, reads_each_format_by_its_extension) {
 }
 
 TEST_F(LoadScene, names_the_format_of_a_wrong_extension) {
-  EXPECT_THAT(message_of(write("a.stl", kPly)), AllOf(HasSubstr("a.stl: holds PLY data, not STL"), HasSubstr(".ply")));
+  EXPECT_THAT(message_of(write("a.stl", kPly)),
+              AllOf(HasSubstr("a.stl: holds PLY data, not STL"), HasSubstr(".ply")));
   EXPECT_THAT(message_of(write("a.ply", kOff)), HasSubstr("holds OFF data, not PLY"));
   EXPECT_THAT(message_of(write("a.obj", kStl)), HasSubstr("holds STL data, not OBJ"));
   EXPECT_THAT(message_of(write("a.off", kStl)), HasSubstr("holds STL data, not OFF"));
 }
 
 TEST_F(LoadScene, suggests_an_extension_for_an_unknown_one) {
-  EXPECT_THAT(message_of("part.slt"), AllOf(HasSubstr("\".slt\""), HasSubstr("did you mean \".stl\"?"), HasSubstr(".ply")));
-  EXPECT_THAT(message_of("part.jpeg"), AllOf(HasSubstr("\".jpeg\" is not known"), HasSubstr(".obj")));
+  EXPECT_THAT(message_of("part.slt"),
+              AllOf(HasSubstr("\".slt\""), HasSubstr("did you mean \".stl\"?"), HasSubstr(".ply")));
+  EXPECT_THAT(message_of("part.jpeg"),
+              AllOf(HasSubstr("\".jpeg\" is not known"), HasSubstr(".obj")));
   EXPECT_THAT(message_of("part"), HasSubstr("has no extension"));
 }
 
@@ -76,7 +80,8 @@ TEST_F(LoadScene, finds_the_libraries_and_pictures_beside_a_model) {
   write("looks.mtl", "newmtl red\nKd 1 0 0\n");
   const Scene scene = load_scene(write("a.obj", "mtllib looks.mtl\nusemtl red\n" + kObj));
   EXPECT_EQ(scene.materials.at(scene.objects.at(0).material.index).base_color, Rgb(1, 0, 0));
-  EXPECT_THAT(message_of(write("b.obj", "mtllib gone.mtl\n" + kObj)), HasSubstr("\"gone.mtl\" is not there"));
+  EXPECT_THAT(message_of(write("b.obj", "mtllib gone.mtl\n" + kObj)),
+              HasSubstr("\"gone.mtl\" is not there"));
   EXPECT_THAT(message_of(write("c.obj", "mtllib .\n" + kObj)), HasSubstr("is a folder"));
   write("pictures.mtl", "newmtl red\nmap_Kd bad.png\n");
   write("bad.png", "no picture");
