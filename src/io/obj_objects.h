@@ -12,7 +12,7 @@
 
 #include "arris/scene.h"
 #include "io/key_index.h"
-#include "io/polygon.h"
+#include "geometry/polygon.h"
 
 namespace arris {
 

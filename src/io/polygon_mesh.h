@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "arris/scene.h"
-#include "io/polygon.h"
+#include "geometry/polygon.h"
 
 namespace arris {
 

@@ -209,7 +209,7 @@ void NetworkBuilder::make_spheres() {
     } else {
       const Arc stub{
           Vec3f(position), Vec3f(position), ring_[i].face_after, ring_[i].face_before, node, kNone};
-      out_.arcs.push_back({stub, v, v});
+      out_.arcs.push_back({stub, v, v, ring_[i].half_edge, kNone});
     }
   }
   for (const CornerErosion::ShortArc& s : erosion->short_arcs) {
@@ -218,7 +218,7 @@ void NetworkBuilder::make_spheres() {
     const Arc arc{
         Vec3f(p0),      Vec3f(p1),     ring_[s.face_a].face_after, ring_[s.face_b].face_after,
         base + s.node0, base + s.node1};
-    out_.arcs.push_back({arc, v, v});
+    out_.arcs.push_back({arc, v, v, kNone, kNone});
   }
 }
 
@@ -249,7 +249,7 @@ bool NetworkBuilder::make_arc(std::uint32_t first) {
   }
   ++out_.rounded_edges;
   const Arc arc{Vec3f(e0.point), Vec3f(e1.point), face_a, face_b, e0.node, e1.node};
-  out_.arcs.push_back({arc, v0, v1});
+  out_.arcs.push_back({arc, v0, v1, first, back});
   if (arc_length > kLengthTolerance * size_) return true;
   out_.inverted = true;
   return false;

@@ -21,6 +21,9 @@ namespace arris {
 struct NetworkArc {
   Arc arc;
   Vec3d v0, v1;
+  // The mesh's half-edges that leave v0 and v1 along the chain; kNone for an arc within a corner. A stub has
+  // the first alone.
+  std::uint32_t half_edge0 = kNone, half_edge1 = kNone;
 };
 
 struct NetworkNode {

@@ -135,14 +135,14 @@ ShellNetwork make_eroded_polyhedron(std::span<const Plane> planes,
       // Stays sharp: marks its direction at both ends.
       Arc stub = arc;
       stub.node1 = kNone;
-      network.arcs.push_back({stub, nodes[n0], nodes[n0]});
+      network.arcs.push_back({stub, nodes[n0], nodes[n0], kNone, kNone});
       std::swap(stub.face_a, stub.face_b);
       stub.p0 = arc.p1;
       stub.node0 = n1;
-      network.arcs.push_back({stub, nodes[n1], nodes[n1]});
+      network.arcs.push_back({stub, nodes[n1], nodes[n1], kNone, kNone});
       continue;
     }
-    network.arcs.push_back({arc, nodes[n0], nodes[n1]});
+    network.arcs.push_back({arc, nodes[n0], nodes[n1], kNone, kNone});
     ++network.rounded_edges;
     ++rounded_at[n0];
     ++rounded_at[n1];

@@ -10,6 +10,7 @@
 #include "rounding/crease_network.h"
 #include "rounding/eroded_polyhedron.h"
 #include "rounding/rounding_data.h"
+#include "rounding/rounding_parts.h"
 
 namespace arris {
 namespace {
@@ -43,6 +44,19 @@ class RoundingMaker {
     if (options_.detection == Detection::kd_tree) make_tree();
     finish_report();
     return std::move(data_);
+  }
+
+  // Besides, what the rounding was made from.
+  RoundingParts make_parts() {
+    keep_networks_ = true;
+    RoundingParts parts;
+    parts.data = make();
+    parts.welded = std::move(welded_);
+    parts.regions = std::move(regions_);
+    parts.kinds = std::move(kinds_);
+    parts.networks = std::move(networks_);
+    parts.networks.resize(parts.welded.shells.size());
+    return parts;
   }
 
  private:
@@ -165,6 +179,9 @@ class RoundingMaker {
     const BandInput input{mesh_, welded_, regions_, triangle_begin_, triangles_, options_.radius};
     append_bands(input, network, solid, solid.first_arc, bands_);
     append(network, solid);
+    if (!keep_networks_) return;
+    networks_.resize(data_->solids.size());
+    networks_[s] = std::move(network);
   }
 
   [[nodiscard]] std::span<const Plane> planes_of(const Solid& solid) const {
@@ -363,6 +380,8 @@ class RoundingMaker {
   std::vector<std::uint32_t> triangle_begin_, triangles_;
   std::vector<TriangleBand> bands_;
   std::vector<std::uint32_t> walls_;
+  bool keep_networks_ = false;
+  std::vector<ShellNetwork> networks_;
   std::uint64_t cavities_ = 0, shortened_ = 0, too_small_ = 0;
 };
 
@@ -371,6 +390,11 @@ class RoundingMaker {
 Rounding make_rounding(const MeshView& mesh, const RoundingOptions& options,
                        const std::string& name) {
   return Rounding(RoundingMaker(mesh, options, name).make());
+}
+
+RoundingParts make_rounding_parts(const MeshView& mesh, const RoundingOptions& options,
+                                  const std::string& name) {
+  return RoundingMaker(mesh, options, name).make_parts();
 }
 
 }  // namespace arris

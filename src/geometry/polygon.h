@@ -2,7 +2,7 @@
 // What       cuts ears off a polygon in the plane of its vector area; convex ones become a fan
 // In / Out   corner positions in order; n - 2 triangles of corner numbers, of the same orientation
 // Guarantee  every corner is used, so that neighbours that share an edge stay closed; a simple planar
-//            polygon, convex or concave, is covered exactly (tests/io/polygon_test.cpp)
+//            polygon, convex or concave, is covered exactly (tests/geometry/polygon_test.cpp)
 // Limits     a polygon that crosses itself, or folds over in its plane, gets some cover of all its
 //            corners. A collinear corner makes a flat triangle only if the whole polygon is flat.
 // Cost       linear if convex; else corners times concave corners as a rule. The sum over all polygons of
