@@ -5,6 +5,7 @@
 #pragma once
 
 #include <algorithm>
+#include <ctime>
 #include <functional>
 #include <memory>
 #include <string>
@@ -20,7 +21,8 @@ struct Variant {
 };
 
 struct Timing {
-  std::vector<double> seconds;  // one per round
+  std::vector<double> seconds;      // one per round
+  std::vector<double> cpu_seconds;  // of all threads: tells more than the clock on a busy machine
   RayCounts rays;
 };
 
@@ -31,11 +33,10 @@ inline double median(std::vector<double> values) {
   return values.size() % 2 != 0 ? values[half] : 0.5 * (values[half - 1] + values[half]);
 }
 
-// Median over the rounds of the time over that of `base` in the same round.
-inline double median_ratio(const Timing& timing, const Timing& base) {
+// Median over the rounds of a time over that of `base` in the same round.
+inline double median_ratio(const std::vector<double>& seconds, const std::vector<double>& base) {
   std::vector<double> ratios;
-  for (std::size_t i = 0; i < timing.seconds.size(); ++i)
-    ratios.push_back(timing.seconds[i] / base.seconds[i]);
+  for (std::size_t i = 0; i < seconds.size(); ++i) ratios.push_back(seconds[i] / base[i]);
   return median(ratios);
 }
 
@@ -53,7 +54,9 @@ inline std::vector<Timing> render_interleaved(const std::vector<Variant>& varian
   for (int round = 0; round < options.rounds; ++round)
     for (std::size_t k = 0; k < variants.size(); ++k) {
       const std::size_t i = round % 2 == 0 ? k : variants.size() - 1 - k;
+      const std::clock_t start = std::clock();
       const RenderResult result = renderer->render(*variants[i].prepared, options.render);
+      timings[i].cpu_seconds.push_back(double(std::clock() - start) / CLOCKS_PER_SEC);
       timings[i].seconds.push_back(result.seconds);
       timings[i].rays = result.rays;
       if (round == 0 && options.on_picture) options.on_picture(variants[i], result);

@@ -130,11 +130,12 @@ void measure(const Arguments& arguments, const Peer& peer) {
   for (std::size_t i = 0; i < variants.size(); ++i) {
     const double seconds = median(timings[i].seconds);
     std::printf(
-        "  %-6s %7.3f s  %6.3f Mpaths/s  %6.2f Mrays/s  %5.3f of none  %5.3f of Cycles without "
+        "  %-6s %7.3f s  %6.3f Mpaths/s  %6.2f Mrays/s  %5.3f of none (processor time)  %5.3f of "
+        "Cycles without "
         "rounding (%.2f s)  %.2f%% of rays rounded\n",
         variants[i].name.c_str(), seconds, double(timings[i].rays.camera) / seconds / 1e6,
-        double(timings[i].rays.total) / seconds / 1e6, median_ratio(timings[i], timings[0]),
-        seconds / cycles, cycles,
+        double(timings[i].rays.total) / seconds / 1e6,
+        median_ratio(timings[i].cpu_seconds, timings[0].cpu_seconds), seconds / cycles, cycles,
         100.0 * double(timings[i].rays.rounded) / double(timings[i].rays.total));
   }
 }

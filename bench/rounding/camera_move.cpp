@@ -34,7 +34,7 @@ std::vector<MoveFrame> measure_camera_move(const BenchScene& bench, int frames,
     const RayCounts& rays = timings[1].rays;
     measured.push_back({rays.total > 0 ? double(rays.rounded) / double(rays.total) : 0,
                         median(timings[0].seconds), median(timings[1].seconds),
-                        median_ratio(timings[1], timings[0])});
+                        median_ratio(timings[1].cpu_seconds, timings[0].cpu_seconds)});
   }
   return measured;
 }

@@ -12,7 +12,7 @@ namespace arris::bench {
 struct MoveFrame {
   double affected = 0;  // share of all rays
   double none_seconds = 0, exact_seconds = 0;
-  double ratio = 0;  // exact to none, median over the rounds
+  double ratio = 0;  // exact to none, of processor time, median over the rounds
 };
 
 std::vector<MoveFrame> measure_camera_move(const BenchScene& bench, int frames,

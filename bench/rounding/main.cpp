@@ -40,6 +40,7 @@ json json_of(const Table& table) {
       r.update({{"triangles", p.triangles},
                 {"seconds", row.seconds},
                 {"ratio", row.ratio},
+                {"cpu_ratio", row.cpu_ratio},
                 {"geometry_bytes", p.geometry_bytes},
                 {"rounding_bytes", p.rounding_bytes},
                 {"build_seconds", p.build_seconds},

@@ -183,10 +183,10 @@ BenchScene make_scene1() {
 
 // A heap seen from near: pieces fill the picture.
 BenchScene make_scene2() {
-  BenchScene bench{"scene2", "Scene 2", make_stage(120, {0, -8, 0}), kSceneRadius};
+  BenchScene bench{"scene2", "Scene 2", make_stage(120, {0, -8, 0}), 0.1};
   Random random(2);
   scatter(bench.scene, 5000, {.columns = 50, .rows = 25, .pitch = 1.05}, random);
-  bench.scene.camera = Camera{.position = {2, -25, 11}, .target = {0, -9, 1.2}, .fov_deg = 24};
+  bench.scene.camera = Camera{.position = {2, -23, 12}, .target = {0, -8, 1}, .fov_deg = 24};
   round_all(bench);
   return bench;
 }
@@ -286,7 +286,7 @@ BenchScene make_cornell() {
                                    .edge_v = {1.3, 0, 0},
                                    .radiance = {17, 12, 6}});
   scene.environment = ConstantEnvironment{};
-  scene.camera = Camera{.position = {2.75, 0.25, 2.75}, .target = {2.75, 5.5, 2.5}, .fov_deg = 62};
+  scene.camera = Camera{.position = {2.75, 0.5, 2.75}, .target = {2.75, 5.5, 2.6}, .fov_deg = 88};
   scene.image = {.width_px = 960, .height_px = 540, .samples_per_pixel = 16, .max_depth = 8};
   scene.image.filter = ImageSettings::Filter::box;
   round_all(bench);

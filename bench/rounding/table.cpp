@@ -64,7 +64,8 @@ Table measure_table(const BenchScene& bench, const TableOptions& options) {
   for (std::size_t i = 0; i < timings.size(); ++i) {
     TableRow& row = table.rows[row_of[i]];
     row.seconds = median(timings[i].seconds);
-    row.ratio = median_ratio(timings[i], timings[0]);
+    row.ratio = median_ratio(timings[i].seconds, timings[0].seconds);
+    row.cpu_ratio = median_ratio(timings[i].cpu_seconds, timings[0].cpu_seconds);
     row.rays = timings[i].rays;
   }
   return table;
@@ -72,9 +73,9 @@ Table measure_table(const BenchScene& bench, const TableOptions& options) {
 
 std::string text_of(const Table& table) {
   std::string text = fmt::format("{} ({}), radius {:g}\n", table.title, table.name, table.radius);
-  text += fmt::format("  {:<16}{:>10}{:>9}{:>8}{:>10}{:>10}{:>9}{:>9}{:>10}{:>10}{:>9}{:>8}\n", "",
-                      "triangles", "time s", "ratio", "MB", "rounding", "build s", "round s",
-                      "edges", "corners", "rays %", "Mray/s");
+  text += fmt::format("  {:<16}{:>10}{:>9}{:>8}{:>8}{:>10}{:>10}{:>9}{:>9}{:>10}{:>10}{:>9}{:>8}\n",
+                      "", "triangles", "time s", "ratio", "cpu", "MB", "rounding", "build s",
+                      "round s", "edges", "corners", "rays %", "Mray/s");
   for (const TableRow& row : table.rows) {
     text += fmt::format("  {:<16}", row.method.title);
     if (!row.failure.empty()) {
@@ -85,10 +86,12 @@ std::string text_of(const Table& table) {
     const double affected =
         row.rays.total > 0 ? 100.0 * double(row.rays.rounded) / double(row.rays.total) : 0;
     text += fmt::format(
-        "{:>10}{:>9.3f}{:>8.3f}{:>10.2f}{:>10.2f}{:>9.3f}{:>9.3f}{:>10}{:>10}{:>9.2f}{:>8.2f}\n",
-        p.triangles, row.seconds, row.ratio, megabytes(p.geometry_bytes + p.rounding_bytes),
-        megabytes(p.rounding_bytes), p.build_seconds, p.round_seconds, p.rounded_edges,
-        p.rounded_corners, affected, double(row.rays.total) / row.seconds / 1e6);
+        "{:>10}{:>9.3f}{:>8.3f}{:>8.3f}{:>10.2f}{:>10.2f}{:>9.3f}{:>9.3f}{:>10}{:>10}{:>9.2f}{:>8."
+        "2f}\n",
+        p.triangles, row.seconds, row.ratio, row.cpu_ratio,
+        megabytes(p.geometry_bytes + p.rounding_bytes), megabytes(p.rounding_bytes),
+        p.build_seconds, p.round_seconds, p.rounded_edges, p.rounded_corners, affected,
+        double(row.rays.total) / row.seconds / 1e6);
   }
   return text;
 }

@@ -28,8 +28,9 @@ struct TableRow {
   Method method;
   std::string failure;  // why this method could not be prepared; the rest is empty then
   PrepareStats prepared;
-  double seconds = 0;  // median
-  double ratio = 0;    // to the first row, median over the rounds
+  double seconds = 0;    // median
+  double ratio = 0;      // to the first row, median over the rounds
+  double cpu_ratio = 0;  // the same of processor time
   RayCounts rays;
 };
 
