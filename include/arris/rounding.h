@@ -67,6 +67,20 @@ struct RoundedHit {
   double t = 0;
   Vec3d normal;  // unit, outward from the solid
   Feature feature = Feature::face;
+  std::uint32_t arc = ~std::uint32_t{0};  // of an edge, for blend_of()
+};
+
+// How a point of an edge's cylinder lies between the two faces beside it: normal = Σ weight · face_normal. A host that
+// shades faces by vertex normals puts those of the triangles at the points in the place of face_normal, and
+// shading goes on smoothly where a rim follows a curved wall.
+struct EdgeBlend {
+  struct Side {
+    std::uint32_t triangle = 0;
+    Vec3d point;  // where the cylinder touches the face, in its plane; not always in the triangle
+    Vec3d face_normal;
+    double weight = 0;
+  };
+  Side a, b;
 };
 
 // What the host knows of where a ray starts, for hits from inside.
@@ -114,6 +128,9 @@ class Rounding {
   // Whether a point, in the mesh's space, lies in the rounded solid. Exact solids only (see is_exact).
   // Cost: linear in the solid's faces.
   [[nodiscard]] bool contains(std::uint32_t solid, Vec3d point) const;
+
+  // Of a hit on an edge of the mesh; nothing for other hits. position: of the hit.
+  [[nodiscard]] std::optional<EdgeBlend> blend_of(const RoundedHit& hit, Vec3d position) const;
 
   // The solid (connected component) of a triangle, and whether it is exact (see Guarantee): once a ray has
   // passed such a solid it never meets it again.

@@ -204,10 +204,43 @@ FilterContext make_filter_context(const SceneRounding& rounding, const TraceRay&
   return context;
 }
 
+// Vertex normals of one side of a rounded edge, at the point where its cylinder touches the face; in world space.
+Vec3f side_normal(const SceneGeometry& geometry, const GeometryRecord& record,
+                  const EdgeBlend::Side& side, Vec3f world_point, Vec3f world_normal) {
+  const WorldTriangle w = world_triangle(geometry.scene, record, side.triangle);
+  const Vec3d e1 = Vec3d(w.p1) - Vec3d(w.p0);
+  const Vec3d e2 = Vec3d(w.p2) - Vec3d(w.p0);
+  const Vec3d p = Vec3d(world_point) - Vec3d(w.p0);
+  const Vec3d n = cross(e1, e2);
+  const double doubled_area = length_squared(n);
+  if (!(doubled_area > 0)) return world_normal;
+  const auto u = float(dot(cross(p, e2), n) / doubled_area);
+  const auto v = float(dot(cross(e1, p), n) / doubled_area);
+  return interpolated_normal(record, record.triangles[side.triangle], u, v, world_normal);
+}
+
+// What smooth shading makes of the normal on a rounded edge.
+Vec3f blended_normal(const SceneGeometry& geometry, const RoundedGeometry& g, const SurfaceHit& hit,
+                     const RoundedHit& rounded) {
+  const GeometryRecord& record = geometry.embree.records()[hit.geometry];
+  // World space only: instances of a mesh with vertex normals keep the cylinder's own.
+  if (record.normals == nullptr || !g.in_world_space) return hit.geometric_normal;
+  const std::optional<EdgeBlend> blend = g.rounding->blend_of(rounded, Vec3d(hit.position));
+  if (!blend) return hit.geometric_normal;
+  Vec3f sum;
+  for (const EdgeBlend::Side& side : {blend->a, blend->b}) {
+    sum += side_normal(geometry, record, side, Vec3f(side.point), Vec3f(side.face_normal)) *
+           float(side.weight);
+  }
+  // Vertex normals that disagree with the faces must not turn the surface around.
+  return dot(sum, hit.geometric_normal) > 0.5F * length(sum) ? normalize(sum)
+                                                             : hit.geometric_normal;
+}
+
 void move_hit(SurfaceHit& hit, const TraceRay& ray, const Verdict& verdict) {
   hit.t = float(verdict.hit.t);
   hit.position = Vec3f(Vec3d(ray.origin) + Vec3d(ray.direction) * verdict.hit.t);
-  hit.geometric_normal = hit.shading_normal = Vec3f(verdict.hit.normal);
+  hit.geometric_normal = Vec3f(verdict.hit.normal);
   hit.side = verdict.entering ? Side::outside : Side::inside;
   hit.feature = verdict.hit.feature;
   hit.rounding_seen = true;
@@ -245,7 +278,7 @@ class RoundedTrace {
     }
     if (verdict.hit.t >= double(ray_.t_max)) return std::nullopt;
     SurfaceHit hit = make_surface_hit(geometry_, ray_, query);
-    move_hit(hit, ray_, verdict);
+    shade_moved(hit, verdict);
     return hit;
   }
 
@@ -278,8 +311,14 @@ class RoundedTrace {
     const RoundedGeometry& g = rounding_.geometries[hit.geometry];
     if (g.rounding == nullptr) return hit;
     const Verdict verdict = judge(g, ray_, candidate_of(query.hit, query.ray.tfar));
-    if (verdict.outcome == Resolution::Outcome::moved) move_hit(hit, ray_, verdict);
+    if (verdict.outcome == Resolution::Outcome::moved) shade_moved(hit, verdict);
     return hit;
+  }
+
+  void shade_moved(SurfaceHit& hit, const Verdict& verdict) const {
+    move_hit(hit, ray_, verdict);
+    hit.shading_normal =
+        blended_normal(geometry_, rounding_.geometries[hit.geometry], hit, verdict.hit);
   }
 
   // Next hit at or behind range.t_min that the ray does not pass, other than `without`.

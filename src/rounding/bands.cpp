@@ -42,6 +42,32 @@ class BandMaker {
   }
 
  private:
+  struct DepthAndAlong {
+    double depth, along;
+  };
+
+  // Does the triangle have points of some depth within the edge's extent? Both are linear on it: what of it is
+  // deep enough is a triangle or quadrilateral whose extent along the edge is that of its corners.
+  [[nodiscard]] bool reaches(const std::array<DepthAndAlong, 3>& corners, double along_min,
+                             double along_max) const {
+    const double least = kDepthTolerance * solid_.size;
+    double low = std::numeric_limits<double>::infinity();
+    double high = -low;
+    const auto include = [&](double along) {
+      low = std::min(low, along);
+      high = std::max(high, along);
+    };
+    for (std::size_t i = 0; i < 3; ++i) {
+      const DepthAndAlong& p = corners[i];
+      const DepthAndAlong& q = corners[(i + 1) % 3];
+      if (p.depth > least) include(p.along);
+      if ((p.depth > least) != (q.depth > least)) {
+        include(p.along + (q.along - p.along) * (least - p.depth) / (q.depth - p.depth));
+      }
+    }
+    return low <= high && (solid_.exact || (high >= along_min && low <= along_max));
+  }
+
   [[nodiscard]] Vec3d corner(std::uint32_t triangle, std::size_t k) const {
     return Vec3d(in_.mesh.positions[in_.mesh.triangles[triangle][k]]) - solid_.center;
   }
@@ -57,21 +83,15 @@ class BandMaker {
         in_.radius * dot(j.normal, k.normal) + (j.d - in_.radius);  // of n_j·I: depth 0
     for (std::uint32_t i = in_.triangle_begin[face]; i < in_.triangle_begin[face + 1]; ++i) {
       const std::uint32_t t = in_.triangles[i];
-      std::array<double, 3> depth{};
-      double lowest = std::numeric_limits<double>::infinity();
-      double highest = -lowest;
-      double deepest = -lowest;
+      std::array<DepthAndAlong, 3> corners;
       for (std::size_t c = 0; c < 3; ++c) {
         const Vec3d p = corner(t, c);
-        depth[c] = dot(j.normal, p) - offset;
-        deepest = std::max(deepest, depth[c]);
-        lowest = std::min(lowest, dot(axis, p));
-        highest = std::max(highest, dot(axis, p));
+        corners[c] = {dot(j.normal, p) - offset, dot(axis, p)};
       }
-      if (deepest <= kDepthTolerance * solid_.size) continue;
-      if (!solid_.exact && (highest < along_min || lowest > along_max)) continue;
+      if (!reaches(corners, along_min, along_max)) continue;
+      const double c0 = corners[0].depth;
       out_.push_back(
-          {t, {float(depth[0]), float(depth[1] - depth[0]), float(depth[2] - depth[0]), arc}});
+          {t, {float(c0), float(corners[1].depth - c0), float(corners[2].depth - c0), arc}});
     }
   }
 
@@ -81,7 +101,7 @@ class BandMaker {
                                          dot(axis, source.v1)};
     const auto [low, high] = std::ranges::minmax(along);
     // Where the face widens at an obtuse corner its band goes on past the edge's end.
-    return {low - 2 * in_.radius, high + 2 * in_.radius};
+    return {low - in_.radius, high + in_.radius};
   }
 
   const BandInput& in_;

@@ -248,7 +248,8 @@ bool NetworkBuilder::make_arc(std::uint32_t first) {
         std::min(out_.radius_limit, radius_ * edge_length / (edge_length - arc_length));
   }
   ++out_.rounded_edges;
-  const Arc arc{Vec3f(e0.point), Vec3f(e1.point), face_a, face_b, e0.node, e1.node};
+  const Arc arc{Vec3f(e0.point), Vec3f(e1.point), face_a,    face_b,
+                e0.node,         e1.node,         first / 3, mesh_.twin[first] / 3};
   out_.arcs.push_back({arc, v0, v1, first, back});
   if (arc_length > kLengthTolerance * size_) return true;
   out_.inverted = true;

@@ -247,6 +247,10 @@ class RoundingMaker {
       Arc arc = source.arc;
       arc.node0 += solid.first_node;
       if (!arc.is_stub()) arc.node1 += solid.first_node;
+      const std::size_t triangles = mesh_.triangles.size();  // pieces of split ones have no normals
+      if (arc.triangle_a >= triangles || arc.triangle_b >= triangles) {
+        arc.triangle_a = arc.triangle_b = kNone;
+      }
       data_->arcs.push_back(arc);
     }
     for (const NetworkNode& source : network.nodes) {

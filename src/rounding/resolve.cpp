@@ -72,14 +72,14 @@ bool is_in_void(const Rounding::Data& data, const Solid& solid, Vec3d x) {
 Resolution walk_from_void(const Rounding::Data& data, const Solid& solid, Vec3d origin,
                           const FaceHit& exit) {
   Resolution out;
-  out.hit = {exit.t, data.faces[exit.face].normal, Feature::face};
+  out.hit = {exit.t, data.faces[exit.face].normal, Feature::face, kNone};
   out.outcome = Resolution::Outcome::passed;
   const std::optional<Place> place = search_place(data, solid, origin);
   if (!place) return out;
   const std::optional<WalkHit> met = walk(data, solid, *place, origin, exit.direction);
   if (!met) return out;
   out.outcome = Resolution::Outcome::moved;
-  out.hit = {met->distance / exit.scale, met->normal, met->feature};
+  out.hit = {met->distance / exit.scale, met->normal, met->feature, met->arc};
   return out;
 }
 
@@ -191,7 +191,7 @@ Resolution Rounding::resolve(const Ray& ray, const MeshHit& hit, RayStart start)
   const Solid& solid = data_->solids[solid_index];
   const FaceHit at = locate(*data_, ray, hit);
   const Face& face = data_->faces[at.face];
-  out.hit = {at.t, face.normal, Feature::face};
+  out.hit = {at.t, face.normal, Feature::face, kNone};
   const bool entering = dot(face.normal, at.direction) < 0;
   if (!entering && solid.exact && start != RayStart::inside) {
     const Vec3d origin = ray.origin - solid.center;
@@ -210,7 +210,7 @@ Resolution Rounding::resolve(const Ray& ray, const MeshHit& hit, RayStart start)
   }
   out.outcome = Resolution::Outcome::moved;
   const double along = met->distance / at.scale;
-  out.hit = {entering ? at.t + along : at.t - along, met->normal, met->feature};
+  out.hit = {entering ? at.t + along : at.t - along, met->normal, met->feature, met->arc};
   return out;
 }
 
@@ -218,6 +218,22 @@ bool Rounding::contains(std::uint32_t solid_index, Vec3d point) const {
   const Solid& solid = data_->solids[solid_index];
   const Vec3d x = point - solid.center;
   return is_in_solid(*data_, solid, x) && !is_in_void(*data_, solid, x);
+}
+
+std::optional<EdgeBlend> Rounding::blend_of(const RoundedHit& hit, Vec3d position) const {
+  if (hit.arc == kNone || data_->arcs[hit.arc].triangle_a == kNone) return std::nullopt;
+  const Arc& arc = data_->arcs[hit.arc];
+  const Vec3d na = data_->faces[arc.face_a].normal;
+  const Vec3d nb = data_->faces[arc.face_b].normal;
+  // hit.normal = α n_a + β n_b on the cylinder.
+  const double c = dot(na, nb);
+  const double s2 = length_squared(cross(na, nb));
+  const double along_a = dot(hit.normal, na);
+  const double along_b = dot(hit.normal, nb);
+  const Vec3d on_axis = position - hit.normal * data_->radius;
+  return EdgeBlend{
+      {arc.triangle_a, on_axis + na * data_->radius, na, (along_a - c * along_b) / s2},
+      {arc.triangle_b, on_axis + nb * data_->radius, nb, (along_b - c * along_a) / s2}};
 }
 
 std::uint32_t Rounding::solid_of(std::uint32_t triangle) const {

@@ -32,6 +32,9 @@ struct Arc {
   Vec3f p0, p1;
   std::uint32_t face_a, face_b;
   std::uint32_t node0, node1;
+  // Triangles of the two faces at the mesh edge, whose vertex normals shade the cylinder; kNone for arcs between
+  // faces that are not neighbours in the mesh.
+  std::uint32_t triangle_a = kNone, triangle_b = kNone;
 
   [[nodiscard]] bool is_stub() const { return node1 == kNone; }
 };

@@ -104,7 +104,7 @@ class Walk {
   }
 
   void set_hit(double s, Vec3d normal, Feature feature) {
-    hit_ = WalkHit{travelled_ + s, normal, feature};
+    hit_ = WalkHit{travelled_ + s, normal, feature, kNone};
   }
 
   // Returns the next place, with done_ = false; else hit_ holds the outcome.
@@ -138,6 +138,7 @@ class Walk {
       if (root.distance == kInfinity) return {};
       if (root.distance > exit && !solid_.exact) return {};
       set_hit(root.distance, (offset + across * root.distance) / r_, Feature::edge);
+      hit_->arc = index;
       if (root.inside) hit_->normal = normalize(offset);
       return {};
     }

@@ -34,6 +34,7 @@ struct WalkHit {
   double distance = 0;  // along the ray from its start
   Vec3d normal;
   Feature feature = Feature::edge;
+  std::uint32_t arc = kNone;  // of an edge
 };
 
 // From x, a point of the void at `place`. Nothing if the ray leaves the solid.
