@@ -8,6 +8,7 @@
 #include <chrono>
 #include <cstdlib>
 #include <cstring>
+#include <ctime>
 #include <string>
 #include <vector>
 
@@ -28,16 +29,30 @@ struct Settings {
   int threads = 0;
 };
 
-double seconds_since(std::chrono::steady_clock::time_point start) {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+// Wall time, and processor time of all threads, which other programs disturb less.
+struct Seconds {
+  double wall = 0, cpu = 0;
+};
+
+Seconds now() {
+  timespec cpu{};
+  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &cpu);
+  const auto wall = std::chrono::steady_clock::now().time_since_epoch();
+  return {std::chrono::duration<double>(wall).count(),
+          double(cpu.tv_sec) + 1e-9 * double(cpu.tv_nsec)};
+}
+
+Seconds since(Seconds start) {
+  const Seconds end = now();
+  return {end.wall - start.wall, end.cpu - start.cpu};
 }
 
 // The bare loop: nothing but Embree.
-double time_bare_loop(const Recording& recording, int threads) {
+Seconds time_bare_loop(const Recording& recording, int threads) {
   constexpr std::size_t kChunk = 4096;
   const std::size_t chunks = (recording.rays.size() + kChunk - 1) / kChunk;
   const EmbreeCalls& embree = embree_calls();
-  const auto start = std::chrono::steady_clock::now();
+  const Seconds start = now();
   parallel_for(chunks, {.grain = 1, .threads = threads}, [&](std::size_t chunk) {
     const FlushDenormals flush;
     RTCIntersectContext context;
@@ -56,12 +71,18 @@ double time_bare_loop(const Recording& recording, int threads) {
       }
     }
   });
-  return seconds_since(start);
+  return since(start);
 }
 
-double median(std::vector<double> values) {
-  std::sort(values.begin(), values.end());
-  return values[values.size() / 2];
+Seconds median(const std::vector<Seconds>& times) {
+  std::vector<double> wall, cpu;
+  for (const Seconds& time : times) {
+    wall.push_back(time.wall);
+    cpu.push_back(time.cpu);
+  }
+  std::sort(wall.begin(), wall.end());
+  std::sort(cpu.begin(), cpu.end());
+  return {wall[wall.size() / 2], cpu[cpu.size() / 2]};
 }
 
 Recording record_rays(const PreparedScene& scene, RenderOptions options) {
@@ -69,6 +90,18 @@ Recording record_rays(const PreparedScene& scene, RenderOptions options) {
   start_recording();
   static_cast<void>(make_path_renderer()->render(scene, options));
   return stop_recording();
+}
+
+void report(double rays, double paths, Seconds rendered, Seconds bare) {
+  fmt::print(
+      "renderer      wall {:8.3f} s  {:7.2f} M rays/s  {:6.3f} M paths/s   processor {:8.3f} s\n",
+      rendered.wall, rays * 1e-6 / rendered.wall, paths * 1e-6 / rendered.wall, rendered.cpu);
+  fmt::print(
+      "Embree alone  wall {:8.3f} s  {:7.2f} M rays/s                     processor {:8.3f} s\n",
+      bare.wall, rays * 1e-6 / bare.wall, bare.cpu);
+  fmt::print(
+      "ratio         wall {:8.3f}                                        processor {:8.3f}\n",
+      bare.wall / rendered.wall, bare.cpu / rendered.cpu);
 }
 
 void measure(const Settings& settings) {
@@ -81,27 +114,23 @@ void measure(const Settings& settings) {
   const auto shadows = std::count_if(recording.rays.begin(), recording.rays.end(),
                                      [](const TappedRay& ray) { return ray.shadow; });
   const auto renderer = make_path_renderer();
-  std::vector<double> rendered, bare;
+  std::vector<Seconds> rendered, bare;
   RenderResult result;
   for (int run = 0; run < settings.runs; ++run) {
+    const Seconds start = now();
     result = renderer->render(*scene, options);
-    rendered.push_back(result.seconds);
+    rendered.push_back(since(start));
     bare.push_back(time_bare_loop(recording, settings.threads));
   }
   if (!settings.output.empty()) {
     save_picture(result.picture, settings.output);
   }
-  const double rays = double(recording.rays.size());
   const PrepareStats& stats = prepare_stats(*scene);
   fmt::print("{} triangles in {} objects, built in {:.3f} s, {:.1f} MB\n", stats.triangles,
              stats.objects, stats.build_seconds, double(stats.geometry_bytes) * 1e-6);
   fmt::print("{} paths, {} rays ({:.1f}% shadow rays)\n", result.rays.camera, recording.rays.size(),
-             100 * double(shadows) / rays);
-  fmt::print("renderer     {:8.3f} s  {:7.2f} M rays/s  {:6.3f} M paths/s\n", median(rendered),
-             rays * 1e-6 / median(rendered), double(result.rays.camera) * 1e-6 / median(rendered));
-  fmt::print("Embree alone {:8.3f} s  {:7.2f} M rays/s\n", median(bare),
-             rays * 1e-6 / median(bare));
-  fmt::print("ratio        {:8.3f}\n", median(bare) / median(rendered));
+             100 * double(shadows) / double(recording.rays.size()));
+  report(double(recording.rays.size()), double(result.rays.camera), median(rendered), median(bare));
 }
 
 int run(int argc, char** argv) {
