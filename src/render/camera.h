@@ -18,7 +18,7 @@ CameraRays make_camera_rays(const Camera& camera, const ImageSettings& image);
 inline TraceRay camera_ray(const CameraRays& camera, double x, double y) {
   TraceRay ray;
   ray.origin = camera.position;
-  ray.direction = Vec3f(normalize(camera.corner + camera.step_x * x + camera.step_y * y));
+  ray.direction = normalize(Vec3f(camera.corner + camera.step_x * x + camera.step_y * y));
   return ray;
 }
 

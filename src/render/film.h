@@ -36,7 +36,8 @@ class Film {
 
   [[nodiscard]] bool has_layers() const { return has_layers_; }
 
-  void add(std::size_t pixel, Rgb radiance) { color_[pixel] += Vec3d(radiance); }
+  // The sum so far, to be added to sample by sample.
+  [[nodiscard]] Vec3d& color_sum(std::size_t pixel) { return color_[pixel]; }
   // Call for a pixel's samples in order: "object" is what the first one saw.
   void add_layers(std::size_t pixel, const FirstHit& first);
 

@@ -11,9 +11,9 @@
 namespace arris {
 namespace {
 
-// Numbers of the sampler that a vertex uses, in this order: light selection, light (2D), lobe, direction
-// (2D), roulette. Passing a translucent surface draws from dimensions of its own.
-constexpr std::uint32_t kDimensionsPerVertex = 5;
+// Numbers of the sampler that a vertex uses, in this order: light (2D), light selection, lobe and
+// roulette (2D), direction (2D). Passing a translucent surface draws from dimensions of its own.
+constexpr std::uint32_t kDimensionsPerVertex = 4;
 constexpr std::uint32_t kOpacityDimensions = 1U << 16U;
 
 // Surfaces let straight through in one go; more than that only coincident sheets can cause.
@@ -84,10 +84,10 @@ struct Path {
   void add_area_lights(float t_end);
   void add_background();
   void add_emission(const SurfaceHit& hit, Rgb emission);
-  [[nodiscard]] float visibility(TraceRay shadow_ray);
   void add_sampled_light(const SurfaceHit& hit, const Frame& frame, const Bsdf& bsdf);
-  [[nodiscard]] bool scatter(const SurfaceHit& hit, const Frame& frame, const Bsdf& bsdf);
-  [[nodiscard]] bool survives_roulette();
+  [[nodiscard]] bool scatter(const SurfaceHit& hit, const Frame& frame, const Bsdf& bsdf,
+                             float u_lobe);
+  [[nodiscard]] bool survives_roulette(float u);
   [[nodiscard]] bool passes_through(const SurfaceHit& hit, float opacity);
 };
 
@@ -132,36 +132,6 @@ void Path::add_emission(const SurfaceHit& hit, Rgb emission) {
   radiance += throughput * emission * weight;
 }
 
-// 1 where nothing is between, 0 behind an opaque surface; what opacity lets through otherwise.
-float Path::visibility(TraceRay shadow_ray) {
-  ++rays.total;
-  if (!scene.geometry().any_translucent) [[likely]] {
-    return scene.occluded(shadow_ray) ? 0.0F : 1.0F;
-  }
-  float transmittance = 1;
-  for (int pass = 0; pass < kMaxPasses; ++pass) {
-    const std::optional<SurfaceHit> hit = scene.intersect(shadow_ray);
-    if (!hit) {
-      return transmittance;
-    }
-    const PreparedMaterial& material = scene.geometry().materials[hit->material.index];
-    if (!material.translucent) {
-      return 0;
-    }
-    const Scene& described = scene.scene();
-    transmittance *=
-        1 - eval_opacity(described.materials[hit->material.index], described.textures, hit->uv);
-    if (transmittance <= 0) {
-      return 0;
-    }
-    const float t_max = shadow_ray.t_max - hit->t;
-    shadow_ray = leave_surface(scene, *hit, shadow_ray.direction);
-    shadow_ray.t_max = t_max;
-    ++rays.total;
-  }
-  return 0;
-}
-
 bool same_side(Vec3f direction, const SurfaceHit& hit, bool transmitted) {
   const float cos_theta = dot(direction, hit.geometric_normal);
   const bool leaves_outside = cos_theta > 0;
@@ -169,8 +139,8 @@ bool same_side(Vec3f direction, const SurfaceHit& hit, bool transmitted) {
 }
 
 void Path::add_sampled_light(const SurfaceHit& hit, const Frame& frame, const Bsdf& bsdf) {
-  const float u_select = sampler.next_1d();
   const Vec2f u = sampler.next_2d();
+  const float u_select = lights.emitters.size() > 1 ? sampler.next_1d() : 0.0F;
   const std::optional<LightSample> light = sample_light(lights, hit.position, u_select, u);
   if (!light) {
     return;
@@ -188,7 +158,7 @@ void Path::add_sampled_light(const SurfaceHit& hit, const Frame& frame, const Bs
     return;
   }
   Rgb emitted = light->radiance;
-  TraceRay shadow_ray = leave_surface(scene, hit, light->wi);
+  TraceRay shadow_ray = leave_surface(hit, light->wi);
   shadow_ray.t_max = light->distance;
   if (light->kind == EmitterKind::triangle) {
     shadow_ray.t_max *= kShadowEnd;
@@ -196,12 +166,12 @@ void Path::add_sampled_light(const SurfaceHit& hit, const Frame& frame, const Bs
   }
   const Rgb arriving = throughput * f.value * emitted * (weight / light->pdf);
   if (max_component(arriving) > 0) {
-    radiance += arriving * visibility(shadow_ray);
+    ++rays.total;
+    radiance += arriving * scene.transmittance(shadow_ray);
   }
 }
 
-bool Path::scatter(const SurfaceHit& hit, const Frame& frame, const Bsdf& bsdf) {
-  const float u_lobe = sampler.next_1d();
+bool Path::scatter(const SurfaceHit& hit, const Frame& frame, const Bsdf& bsdf, float u_lobe) {
   const std::optional<BsdfSample> sample = sample_bsdf(bsdf, u_lobe, sampler.next_2d());
   if (!sample) {
     return false;
@@ -216,16 +186,16 @@ bool Path::scatter(const SurfaceHit& hit, const Frame& frame, const Bsdf& bsdf) 
   vertex = hit.position;
   kind = RayKind::scattered;
   passed_distance = 0;
-  ray = leave_surface(scene, hit, direction);
+  ray = leave_surface(hit, direction);
   return true;
 }
 
-bool Path::survives_roulette() {
+bool Path::survives_roulette(float u) {
   const float survival = std::sqrt(max_component(throughput));
   if (survival >= 1) {
     return true;
   }
-  if (sampler.next_1d() >= survival) {
+  if (u >= survival) {
     return false;
   }
   throughput *= 1 / survival;
@@ -242,7 +212,7 @@ bool Path::passes_through(const SurfaceHit& hit, float opacity) {
   }
   ++passes;
   passed_distance += hit.t;
-  ray = leave_surface(scene, hit, ray.direction);
+  ray = leave_surface(hit, ray.direction);
   return true;
 }
 
@@ -271,7 +241,7 @@ PathSample trace_path(const PreparedScene& scene, const PathSettings& settings, 
       break;
     }
     rays.rounded += hit->rounding_seen ? 1 : 0;
-    SurfaceMaterial storage;
+    std::optional<SurfaceMaterial> storage;
     const SurfaceMaterial& material = material_at(scene, *hit, storage);
     if (path.passes_through(*hit, material.opacity)) {
       continue;
@@ -292,8 +262,9 @@ PathSample trace_path(const PreparedScene& scene, const PathSettings& settings, 
       path.add_sampled_light(*hit, frame, bsdf);
     }
     path.sampler.set_dimension(kCameraDimensions + std::uint32_t(depth) * kDimensionsPerVertex + 2);
-    if (!path.scatter(*hit, frame, bsdf) ||
-        (depth >= kRouletteDepth && !path.survives_roulette())) {
+    const Vec2f u = path.sampler.next_2d();
+    if (!path.scatter(*hit, frame, bsdf, u.x) ||
+        (depth >= kRouletteDepth && !path.survives_roulette(u.y))) {
       break;
     }
     ++depth;

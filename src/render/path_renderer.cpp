@@ -70,13 +70,15 @@ PathRays render_tile(const Job& job, Tile tile, SampleRange samples, Film& film)
       continue;
     }
     const std::size_t pixel = std::size_t(y) * std::size_t(job.image.width_px) + std::size_t(x);
+    Vec3d sum = film.color_sum(pixel);
     for (std::uint32_t sample = samples.first; sample < samples.last; ++sample) {
       const PathSample result = render_sample(job, x, y, sample, rays);
-      film.add(pixel, result.radiance);
+      sum += Vec3d(result.radiance);
       if (film.has_layers()) {
         film.add_layers(pixel, result.first);
       }
     }
+    film.color_sum(pixel) = sum;
   }
   return rays;
 }

@@ -45,11 +45,12 @@ struct TraceRay {
 
 struct SurfaceHit {
   float t = 0;
-  Vec3f position;          // on the triangle to within GeometryRecord::position_error
-  Vec3f geometric_normal;  // unit, outward (by winding)
-  Vec3f shading_normal;    // unit, on the geometric normal's side
-  Vec2f uv;                // 0 where the mesh has none
-  float u = 0, v = 0;      // barycentric weights of the second and third vertex
+  float position_error = 0;  // GeometryRecord's
+  Vec3f position;            // on the triangle to within GeometryRecord::position_error
+  Vec3f geometric_normal;    // unit, outward (by winding)
+  Vec3f shading_normal;      // unit, on the geometric normal's side
+  Vec2f uv;                  // 0 where the mesh has none
+  float u = 0, v = 0;        // barycentric weights of the second and third vertex
   std::uint32_t geometry = kNoGeometry;
   std::uint32_t triangle = 0;
   MaterialId material;
@@ -72,8 +73,10 @@ class PreparedScene {
 
   // The closest surface in (t_min, t_max).
   [[nodiscard]] std::optional<SurfaceHit> intersect(const TraceRay& ray) const;
-  // Whether any surface is in (t_min, t_max).
-  [[nodiscard]] bool occluded(const TraceRay& ray) const;
+  // The share of light that passes (t_min, t_max): 0 behind an opaque surface, else the product of what
+  // translucent ones let through.
+  [[nodiscard]] float transmittance(const TraceRay& ray) const;
+  [[nodiscard]] bool occluded(const TraceRay& ray) const { return transmittance(ray) <= 0; }
 
  private:
   std::shared_ptr<const SceneGeometry> geometry_;
@@ -82,6 +85,14 @@ class PreparedScene {
 };
 
 // The ray that leaves a hit in a direction: it starts off the surface by what rounding errors need.
-TraceRay leave_surface(const PreparedScene& scene, const SurfaceHit& hit, Vec3f direction);
+inline TraceRay leave_surface(const SurfaceHit& hit, Vec3f direction) {
+  const bool outward = dot(direction, hit.geometric_normal) > 0;
+  TraceRay ray;
+  ray.origin =
+      hit.position + hit.geometric_normal * (outward ? hit.position_error : -hit.position_error);
+  ray.direction = direction;
+  ray.from = {hit.geometry, hit.triangle, outward ? Side::outside : Side::inside, hit.feature};
+  return ray;
+}
 
 }  // namespace arris

@@ -16,11 +16,6 @@ PreparedMaterial prepare_material(const Material& material) {
   return prepared;
 }
 
-MaterialId material_of(const GeometryRecord& record, std::uint32_t triangle) {
-  return record.triangle_materials == nullptr ? record.material
-                                              : record.triangle_materials[triangle];
-}
-
 Vec2f mix_uv(const GeometryRecord& record, const Triangle& t, Vec3f weights) {
   if (record.uvs == nullptr) {
     return {};

@@ -45,6 +45,11 @@ struct SceneGeometry {
   SceneGeometry(Scene described, const EmbreeSceneOptions& options);
 };
 
+inline MaterialId material_of(const GeometryRecord& record, std::uint32_t triangle) {
+  return record.triangle_materials == nullptr ? record.material
+                                              : record.triangle_materials[triangle];
+}
+
 // World-space corners of a triangle, in the mesh's order.
 struct WorldTriangle {
   Vec3f p0, p1, p2;

@@ -1,6 +1,8 @@
 // surface_point.h — a hit with its material: what scattering needs
 #pragma once
 
+#include <optional>
+
 #include "arris/math.h"
 #include "base/frame.h"
 #include "render/prepared_scene.h"
@@ -16,15 +18,14 @@ Frame shading_frame(const PreparedScene& scene, const SurfaceHit& hit,
 
 // The material at a hit: the prepared factors themselves, or evaluated into `storage` where textured.
 inline const SurfaceMaterial& material_at(const PreparedScene& scene, const SurfaceHit& hit,
-                                          SurfaceMaterial& storage) {
+                                          std::optional<SurfaceMaterial>& storage) {
   const SceneGeometry& geometry = scene.geometry();
   const PreparedMaterial& prepared = geometry.materials[hit.material.index];
   if (!prepared.textured) [[likely]] {
     return prepared.factors;
   }
-  storage =
-      eval_material(geometry.scene.materials[hit.material.index], geometry.scene.textures, hit.uv);
-  return storage;
+  return storage.emplace(
+      eval_material(geometry.scene.materials[hit.material.index], geometry.scene.textures, hit.uv));
 }
 
 // Radiance of the point of an emissive triangle that light sampling drew.

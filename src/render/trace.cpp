@@ -56,12 +56,22 @@ Vec3f unit_normal(const WorldTriangle& w) {
   return precise_length > 0 ? Vec3f(precise * (1 / precise_length)) : Vec3f(0, 0, 1);
 }
 
-SurfaceHit make_surface_hit(const SceneGeometry& geometry, const TraceRay& ray,
-                            const RTCRayHit& query) {
-  SurfaceHit hit;
+Vec2f interpolated_uv(const GeometryRecord& record, const Triangle& indices, float u, float v) {
+  if (record.uvs == nullptr) {
+    return {};
+  }
+  const Vec2f a = record.uvs[indices[0]], b = record.uvs[indices[1]], c = record.uvs[indices[2]];
+  const float w = 1 - u - v;
+  return {w * a.x + u * b.x + v * c.x, w * a.y + u * b.y + v * c.y};
+}
+
+// Written in place: a hit is a hundred bytes, on the hottest path.
+void fill_hit(const SceneGeometry& geometry, const TraceRay& ray, const RTCRayHit& query,
+              SurfaceHit& hit) {
   hit.geometry = geometry_of(query.hit);
   const GeometryRecord& record = geometry.embree.records()[hit.geometry];
   hit.t = query.ray.tfar;
+  hit.position_error = record.position_error;
   hit.triangle = query.hit.primID;
   hit.u = query.hit.u;
   hit.v = query.hit.v;
@@ -73,14 +83,17 @@ SurfaceHit make_surface_hit(const SceneGeometry& geometry, const TraceRay& ray,
                                                  : interpolated_normal(record, indices, hit.u,
                                                                        hit.v, hit.geometric_normal);
   if (record.uvs != nullptr) {
-    const Vec2f a = record.uvs[indices[0]], b = record.uvs[indices[1]], c = record.uvs[indices[2]];
-    const float w = 1 - hit.u - hit.v;
-    hit.uv = {w * a.x + hit.u * b.x + hit.v * c.x, w * a.y + hit.u * b.y + hit.v * c.y};
+    hit.uv = interpolated_uv(record, indices, hit.u, hit.v);
   }
-  hit.material = record.triangle_materials == nullptr ? record.material
-                                                      : record.triangle_materials[hit.triangle];
+  hit.material = material_of(record, hit.triangle);
   hit.object = record.object;
   hit.side = dot(ray.direction, hit.geometric_normal) < 0 ? Side::outside : Side::inside;
+}
+
+SurfaceHit make_surface_hit(const SceneGeometry& geometry, const TraceRay& ray,
+                            const RTCRayHit& query) {
+  SurfaceHit hit;
+  fill_hit(geometry, ray, query, hit);
   return hit;
 }
 
@@ -167,41 +180,58 @@ Verdict judge(const RoundedGeometry& g, const TraceRay& ray, const Candidate& c)
   return verdict;
 }
 
-// Embree's context with what its filter needs.
+// Embree's context with what its filters need.
 struct FilterContext {
   RTCIntersectContext base;  // first, so that a pointer to it is a pointer to this
+  const SceneGeometry* geometry;
   const SceneRounding* rounding;
   const TraceRay* ray;
-  bool any_rounded = false;
+  float transmittance = 1;  // of a shadow ray so far
 };
 
 Candidate candidate_of(const RTCHit& hit, float t) {
   return {geometry_of(hit), hit.primID, hit.u, hit.v, t};
 }
 
-// Drops hits that the ray passes. For shadow rays, also what moved beyond their end.
+// The ray passes the sharp hit, or meets what it moved to only beyond its end.
+bool is_rounded_away(const FilterContext& context, const RTCHit& hit, float t) {
+  const RoundedGeometry& g = context.rounding->geometries[geometry_of(hit)];
+  if (g.rounding == nullptr) return false;
+  const Verdict verdict = judge(g, *context.ray, candidate_of(hit, t));
+  if (verdict.outcome == Resolution::Outcome::kept) return false;
+  return verdict.outcome == Resolution::Outcome::passed ||
+         verdict.hit.t >= double(context.ray->t_max);
+}
+
+// Drops hits that the ray passes.
 void filter_passed(const RTCFilterFunctionNArguments* args) {
+  if (args->valid[0] != -1) return;
+  const auto* context = reinterpret_cast<FilterContext*>(args->context);
+  const auto* hit = reinterpret_cast<const RTCHit*>(args->hit);
+  const auto* query = reinterpret_cast<const RTCRay*>(args->ray);
+  if (is_rounded_away(*context, *hit, query->tfar)) args->valid[0] = 0;
+}
+
+// Called for the surfaces that a shadow ray meets, in any order: it ends at the first that is there and
+// opaque. Of translucent ones it remembers what they let through.
+void filter_shadow(const RTCFilterFunctionNArguments* args) {
   if (args->valid[0] != -1) return;
   auto* context = reinterpret_cast<FilterContext*>(args->context);
   const auto* hit = reinterpret_cast<const RTCHit*>(args->hit);
   const auto* query = reinterpret_cast<const RTCRay*>(args->ray);
-  const RoundedGeometry& g = context->rounding->geometries[geometry_of(*hit)];
-  if (g.rounding == nullptr) return;
-  const Verdict verdict = judge(g, *context->ray, candidate_of(*hit, query->tfar));
-  if (verdict.outcome == Resolution::Outcome::kept) return;
-  context->any_rounded = true;
-  const bool beyond =
-      verdict.outcome == Resolution::Outcome::moved && verdict.hit.t >= double(context->ray->t_max);
-  if (verdict.outcome == Resolution::Outcome::passed || beyond) args->valid[0] = 0;
-}
-
-FilterContext make_filter_context(const SceneRounding& rounding, const TraceRay& ray) {
-  FilterContext context{};
-  rtcInitIntersectContext(&context.base);
-  context.base.filter = &filter_passed;
-  context.rounding = &rounding;
-  context.ray = &ray;
-  return context;
+  if (is_departure(*hit, context->ray->from) ||
+      (context->rounding->any && is_rounded_away(*context, *hit, query->tfar))) {
+    args->valid[0] = 0;
+    return;
+  }
+  const SceneGeometry& geometry = *context->geometry;
+  const GeometryRecord& record = geometry.embree.records()[geometry_of(*hit)];
+  const MaterialId id = material_of(record, hit->primID);
+  if (!geometry.materials[id.index].translucent) return;
+  const Vec2f uv = interpolated_uv(record, record.triangles[hit->primID], hit->u, hit->v);
+  context->transmittance *=
+      1 - eval_opacity(geometry.scene.materials[id.index], geometry.scene.textures, uv);
+  if (context->transmittance > 0) args->valid[0] = 0;
 }
 
 // Vertex normals of one side of a rounded edge, at the point where its cylinder touches the face; in world space.
@@ -323,7 +353,9 @@ class RoundedTrace {
 
   // Next hit at or behind range.t_min that the ray does not pass, other than `without`.
   std::optional<RTCRayHit> trace_filtered(const TraceRay& range, const RTCHit& without) {
-    FilterContext context = make_filter_context(rounding_, ray_);
+    FilterContext context{{}, &geometry_, &rounding_, &ray_};
+    rtcInitIntersectContext(&context.base);
+    context.base.filter = filter_passed;
     RTCRayHit query;
     query.ray = make_ray(range);
     for (;;) {
@@ -359,6 +391,7 @@ bool is_plainly_kept(const SceneRounding& rounding, const TraceRay& ray, const R
 }  // namespace
 
 std::optional<SurfaceHit> PreparedScene::intersect(const TraceRay& ray) const {
+  std::optional<SurfaceHit> hit;
   RTCIntersectContext context;
   rtcInitIntersectContext(&context);
   RTCRayHit query;
@@ -368,41 +401,32 @@ std::optional<SurfaceHit> PreparedScene::intersect(const TraceRay& ray) const {
     query.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
     rtcIntersect1(geometry_->embree.handle(), &context, &query);
     if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) {
-      return std::nullopt;
+      return hit;
     }
     if (!is_departure(query.hit, ray.from)) [[likely]] {
-      if (!rounding_.any || is_plainly_kept(rounding_, ray, query)) [[likely]] {
-        return make_surface_hit(*geometry_, ray, query);
-      }
-      return RoundedTrace(*geometry_, rounding_, ray).settle(query);
+      break;
     }
     // A plane is met once: slivers can be met again by rounding.
     query.ray.tnear = std::nextafter(query.ray.tfar, std::numeric_limits<float>::infinity());
     query.ray.tfar = ray.t_max;
   }
-}
-
-bool PreparedScene::occluded(const TraceRay& ray) const {
-  RTCRay query = make_ray(ray);
-  if (!rounding_.any) {
-    RTCIntersectContext context;
-    rtcInitIntersectContext(&context);
-    rtcOccluded1(geometry_->embree.handle(), &context, &query);
+  if (!rounding_.any || is_plainly_kept(rounding_, ray, query)) [[likely]] {
+    fill_hit(*geometry_, ray, query, hit.emplace());
   } else {
-    FilterContext context = make_filter_context(rounding_, ray);
-    rtcOccluded1(geometry_->embree.handle(), &context.base, &query);
+    hit = RoundedTrace(*geometry_, rounding_, ray).settle(query);
   }
-  return query.tfar < 0;
+  return hit;
 }
 
-TraceRay leave_surface(const PreparedScene& scene, const SurfaceHit& hit, Vec3f direction) {
-  const float error = scene.geometry().embree.records()[hit.geometry].position_error;
-  const bool outward = dot(direction, hit.geometric_normal) > 0;
-  TraceRay ray;
-  ray.origin = hit.position + hit.geometric_normal * (outward ? error : -error);
-  ray.direction = direction;
-  ray.from = {hit.geometry, hit.triangle, outward ? Side::outside : Side::inside, hit.feature};
-  return ray;
+float PreparedScene::transmittance(const TraceRay& ray) const {
+  FilterContext context{{}, geometry_.get(), &rounding_, &ray};
+  rtcInitIntersectContext(&context.base);
+  if (rounding_.any || geometry_->any_translucent) {
+    context.base.filter = filter_shadow;
+  }
+  RTCRay query = make_ray(ray);
+  rtcOccluded1(geometry_->embree.handle(), &context.base, &query);
+  return query.tfar < 0 ? 0.0F : context.transmittance;
 }
 
 }  // namespace arris

@@ -88,7 +88,7 @@ void expect_no_self_intersection(const PreparedScene& scene, Vec3f centre, float
       continue;
     }
     const Vec3f direction = random_direction(random);
-    const TraceRay ray = leave_surface(scene, *hit, direction);
+    const TraceRay ray = leave_surface(*hit, direction);
     const bool outward = dot(direction, hit->geometric_normal) > 0;
     met_again += outward && scene.intersect(ray) ? 1 : 0;
     met_again += outward && scene.occluded(ray) ? 1 : 0;
