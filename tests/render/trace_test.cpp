@@ -38,7 +38,8 @@ Scene one_object(const Mesh& mesh, const Affine3d& world_from_object = {}) {
 
 PreparedScene prepare_with(const Scene& scene, std::uint64_t max_copied_triangles) {
   return PreparedScene(std::make_shared<const SceneGeometry>(
-      scene, EmbreeSceneOptions{.max_copied_triangles = max_copied_triangles}));
+                           scene, EmbreeSceneOptions{.max_copied_triangles = max_copied_triangles}),
+                       SceneRounding{});
 }
 
 TraceRay make_trace_ray(Vec3f origin, Vec3f direction) {
