@@ -5,7 +5,9 @@
 #include <string>
 
 #include "arris/error.h"
+#include "render/bevel_shader.h"
 #include "render/camera.h"
+#include "render/meshed_bevels.h"
 #include "render/scene_geometry.h"
 
 namespace arris {
@@ -34,17 +36,19 @@ PreparedScene::PreparedScene(std::shared_ptr<const SceneGeometry> geometry, Scen
     stats_.triangles += s.meshes[object.mesh.index].triangles.size();
   }
   stats_.geometry_bytes = geometry_->embree.bytes();
-  for (const Mesh& mesh : s.meshes) {
-    stats_.geometry_bytes += mesh.positions.size() * sizeof(Vec3f) +
-                             mesh.normals.size() * sizeof(Vec3f) + mesh.uvs.size() * sizeof(Vec2f) +
-                             mesh.triangles.size() * sizeof(Triangle) +
-                             mesh.triangle_materials.size() * sizeof(MaterialId);
-  }
-  stats_.round_seconds = rounding_.seconds;
-  stats_.rounded_edges = rounding_.edges;
-  stats_.rounded_corners = rounding_.corners;
+  // Bevel meshes count as rounding; their part of the acceleration structure counts as geometry.
+  const MeshedBevels& meshed = geometry_->meshed;
+  const std::size_t described =
+      meshed.described_objects.empty() ? s.meshes.size() : meshed.described_meshes;
   stats_.rounding_bytes = rounding_.bytes;
+  for (std::size_t i = 0; i < s.meshes.size(); ++i) {
+    (i < described ? stats_.geometry_bytes : stats_.rounding_bytes) += bytes_of(s.meshes[i]);
+  }
+  stats_.round_seconds = rounding_.seconds + meshed.seconds;
+  stats_.rounded_edges = rounding_.edges + meshed.edges;
+  stats_.rounded_corners = rounding_.corners + meshed.corners;
   stats_.rounding = rounding_.summaries;
+  stats_.rounding.insert(stats_.rounding.end(), meshed.summaries.begin(), meshed.summaries.end());
 }
 
 PreparedScene::~PreparedScene() = default;
@@ -62,20 +66,31 @@ std::shared_ptr<const PreparedScene> prepare_scene(Scene scene, const PrepareOpt
   if (!scene.environment) {
     scene.environment = StudioEnvironment{.strength = 1, .up = scene.up};
   }
+  MeshedBevels meshed = mesh_bevels(scene, scene.rounding, options.threads);
   auto geometry = std::make_shared<SceneGeometry>(std::move(scene),
                                                   EmbreeSceneOptions{.threads = options.threads});
   geometry->build_seconds =
-      std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+      std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count() -
+      meshed.seconds;
+  geometry->meshed = std::move(meshed);
   SceneRounding rounding = make_scene_rounding(*geometry, geometry->scene.rounding,
                                                {options.threads, options.detection});
+  rounding.shaders = make_bevel_shaders(*geometry, geometry->scene.rounding);
   return std::make_shared<const PreparedScene>(std::move(geometry), std::move(rounding));
 }
 
 std::shared_ptr<const PreparedScene> prepare_again(const PreparedScene& prepared,
                                                    const RoundingSettings& scene_default,
                                                    const PrepareOptions& options) {
+  if (scene_default.method == RoundMethod::mesh ||
+      !prepared.geometry().meshed.described_objects.empty()) {
+    Scene scene = described_scene(prepared.scene(), prepared.geometry().meshed);
+    scene.rounding = scene_default;
+    return prepare_scene(std::move(scene), options);
+  }
   SceneRounding rounding =
       make_scene_rounding(prepared.geometry(), scene_default, {options.threads, options.detection});
+  rounding.shaders = make_bevel_shaders(prepared.geometry(), scene_default);
   return std::make_shared<const PreparedScene>(prepared.shared_geometry(), std::move(rounding));
 }
 

@@ -60,6 +60,14 @@ struct SurfaceHit {
   bool rounding_seen = false;  // the ray met a rounded edge or corner: there, or passing one before
 };
 
+// A hit on one object alone.
+struct ObjectHit {
+  float t = 0;
+  std::uint32_t triangle = 0;
+  Vec3f geometric_normal;  // unit, outward (by winding)
+  Vec3f shading_normal;    // unit, on the geometric normal's side
+};
+
 class PreparedScene {
  public:
   PreparedScene(std::shared_ptr<const SceneGeometry> geometry, SceneRounding rounding);
@@ -73,6 +81,9 @@ class PreparedScene {
 
   // The closest surface in (t_min, t_max).
   [[nodiscard]] std::optional<SurfaceHit> intersect(const TraceRay& ray) const;
+  // The closest triangle of one geometry in (t_min, t_max), whatever else is there, and not rounded.
+  [[nodiscard]] std::optional<ObjectHit> intersect_object(const TraceRay& ray,
+                                                          std::uint32_t geometry) const;
   // The share of light that passes (t_min, t_max): 0 behind an opaque surface, else the product of what
   // translucent ones let through.
   [[nodiscard]] float transmittance(const TraceRay& ray) const;

@@ -6,6 +6,7 @@
 
 #include "arris/scene.h"
 #include "geometry/embree_scene.h"
+#include "render/meshed_bevels.h"
 #include "shading/lights.h"
 #include "shading/surface_material.h"
 
@@ -33,7 +34,8 @@ struct EmitterIndex {
 };
 
 struct SceneGeometry {
-  Scene scene;  // camera and environment filled in
+  Scene scene;          // camera and environment filled in, meshed bevels in their place
+  MeshedBevels meshed;  // what they are
   EmbreeScene embree;
   std::vector<PreparedMaterial> materials;
   EmitterIndex emitter_index;

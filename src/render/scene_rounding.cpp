@@ -17,17 +17,6 @@ namespace {
 constexpr double kAutoPartOfInradius = 0.3;
 constexpr double kAutoPartOfEdge = 0.3;
 
-// Columns of a similarity: orthogonal and of one length.
-std::optional<double> similarity_scale(const Mat3d& m) {
-  const double s = length(m.x);
-  const double slack = 1e-6 * s * s;
-  const bool same =
-      std::abs(dot(m.y, m.y) - s * s) < slack && std::abs(dot(m.z, m.z) - s * s) < slack;
-  const bool square = std::abs(dot(m.x, m.y)) < slack && std::abs(dot(m.y, m.z)) < slack &&
-                      std::abs(dot(m.z, m.x)) < slack;
-  return same && square ? std::optional(s) : std::nullopt;
-}
-
 std::vector<Vec3f> transformed_positions(const Mesh& mesh, const Affine3d& m) {
   std::vector<Vec3f> out;
   out.reserve(mesh.positions.size());
@@ -255,6 +244,16 @@ double auto_radius(const Scene& scene, const Mesh& mesh, const Object& object,
 }
 
 }  // namespace
+
+std::optional<double> similarity_scale(const Mat3d& m) {
+  const double s = length(m.x);
+  const double slack = 1e-6 * s * s;
+  const bool same =
+      std::abs(dot(m.y, m.y) - s * s) < slack && std::abs(dot(m.z, m.z) - s * s) < slack;
+  const bool square = std::abs(dot(m.x, m.y)) < slack && std::abs(dot(m.y, m.z)) < slack &&
+                      std::abs(dot(m.z, m.x)) < slack;
+  return same && square ? std::optional(s) : std::nullopt;
+}
 
 double resolve_radius(const Scene& scene, const Object& object, const RoundingSettings& settings) {
   if (settings.method == RoundMethod::none) return 0;

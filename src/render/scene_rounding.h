@@ -35,10 +35,18 @@ struct RoundedGeometry {
   }
 };
 
+// How edges of one geometry look rounded by its shading normals: see bevel_shader.h.
+struct BevelShader {
+  float delta = 0;  // world units; 0: none
+  float perturb = 1;
+  int divisions = 3;
+};
+
 struct SceneRounding {
   std::vector<RoundedGeometry> geometries;
   std::vector<std::shared_ptr<const Rounding>> roundings;
   bool any = false;
+  std::vector<BevelShader> shaders;  // by geometry; empty if none has one
   // What was built, for PrepareStats.
   double seconds = 0;
   std::vector<RoundingSummary> summaries;
@@ -53,6 +61,9 @@ struct SceneRoundingOptions {
 SceneRounding make_scene_rounding(const SceneGeometry& geometry,
                                   const std::optional<RoundingSettings>& scene_default,
                                   const SceneRoundingOptions& options);
+
+// Length of the columns if they are orthogonal and of one length.
+std::optional<double> similarity_scale(const Mat3d& m);
 
 // The world radius that the settings mean for one object, 0 if none.
 double resolve_radius(const Scene& scene, const Object& object, const RoundingSettings& settings);

@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "render/bevel_shader.h"
 #include "render/prepared_scene.h"
 #include "render/scene_geometry.h"
 
@@ -388,7 +389,36 @@ bool is_plainly_kept(const SceneRounding& rounding, const TraceRay& ray, const R
   return dot(g.rounding->face_normal(query.hit.primID), local_ray(g, ray).direction) < 0;
 }
 
+// Embree's context with the one geometry to be met.
+struct ObjectContext {
+  RTCIntersectContext base;  // first, so that a pointer to it is a pointer to this
+  std::uint32_t geometry;
+};
+
+void filter_other_objects(const RTCFilterFunctionNArguments* args) {
+  const auto* context = reinterpret_cast<const ObjectContext*>(args->context);
+  const auto* hit = reinterpret_cast<const RTCHit*>(args->hit);
+  if (geometry_of(*hit) != context->geometry) args->valid[0] = 0;
+}
+
 }  // namespace
+
+std::optional<ObjectHit> PreparedScene::intersect_object(const TraceRay& ray,
+                                                         std::uint32_t geometry) const {
+  ObjectContext context{};
+  rtcInitIntersectContext(&context.base);
+  context.base.filter = &filter_other_objects;
+  context.geometry = geometry;
+  RTCRayHit query;
+  query.ray = make_ray(ray);
+  query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+  query.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
+  rtcIntersect1(geometry_->embree.handle(), &context.base, &query);
+  if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return std::nullopt;
+  SurfaceHit hit;
+  fill_hit(*geometry_, ray, query, hit);
+  return ObjectHit{hit.t, hit.triangle, hit.geometric_normal, hit.shading_normal};
+}
 
 std::optional<SurfaceHit> PreparedScene::intersect(const TraceRay& ray) const {
   std::optional<SurfaceHit> hit;
@@ -414,6 +444,10 @@ std::optional<SurfaceHit> PreparedScene::intersect(const TraceRay& ray) const {
     fill_hit(*geometry_, ray, query, hit.emplace());
   } else {
     hit = RoundedTrace(*geometry_, rounding_, ray).settle(query);
+  }
+  if (!rounding_.shaders.empty() && hit) [[unlikely]] {
+    const BevelShader& shader = rounding_.shaders[hit->geometry];
+    if (shader.delta > 0) bend_normal(*this, shader, ray.direction, *hit);
   }
   return hit;
 }
