@@ -4,6 +4,8 @@
 //            Geometry, silhouettes and shadows stay sharp.
 // In / Out   lengths in world units, vectors in world space. Outputs as the original's: `fac`, the share of rays that
 //            hit, (hits + 1) / (1 + Divisions³), and the unit `normal`.
+//            A ray that finds nothing within reach counts as a miss: beside concave edges, and few that run along the
+//            face where Perturb is near 1.
 // Differs    The directions d are Owen-scrambled Sobol points in the cube [−1, 1]³, turned so that its z axis is N
 //            (the author: the directions of Perlin noise are "rather awful", "some Halton or Sobel sequence would
 //            probably be better"). Each point of the surface has its own, so that errors are noise that averages out

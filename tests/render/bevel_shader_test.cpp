@@ -70,13 +70,23 @@ TEST(BevelShader, takes_the_rounding_radius_for_delta_and_one_for_perturb) {
   EXPECT_TRUE(prepare_scene(cube_scene({}))->rounding().shaders.empty());
 }
 
+// Directions up to 45° off along each axis stay within reach; with Perturb 1 some run along the face and out of it.
+RoundingSettings steep_settings(double radius, int divisions = 3) {
+  RoundingSettings settings = shader_settings(radius, divisions);
+  settings.shader.perturb = 0.5;
+  return settings;
+}
+
 TEST(BevelShader, leaves_faces_far_from_edges_alone) {
-  const auto scene = prepare_scene(cube_scene(shader_settings(0.1)));
+  const auto scene = prepare_scene(cube_scene(steep_settings(0.1)));
+  const auto wide = prepare_scene(cube_scene(shader_settings(0.1)));
   for (int i = 0; i < 400; ++i) {
     const float x = -0.5F + 0.05F * float(i % 20), y = -0.5F + 0.05F * float(i / 20);
     const BevelShading shading = shade(*scene, x, y);
     EXPECT_FLOAT_EQ(shading.fac, 1);
     EXPECT_GT(shading.normal.z, 1 - 1e-6F);
+    EXPECT_GT(shade(*wide, x, y).fac, 0.7F);
+    EXPECT_GT(shade(*wide, x, y).normal.z, 1 - 1e-6F);
   }
 }
 
@@ -87,7 +97,7 @@ TEST(BevelShader, leans_towards_the_neighbouring_face_and_more_so_nearer_to_the_
     float x = 0, y = 0, z = 0;
     for (int i = 0; i < 50; ++i) {
       const BevelShading shading = shade(*scene, 1 - distance, -0.25F + 0.01F * float(i));
-      EXPECT_FLOAT_EQ(shading.fac, 1) << distance;
+      EXPECT_GT(shading.fac, 0.9F) << distance;
       EXPECT_NEAR(length(shading.normal), 1, 1e-6F);
       x += shading.normal.x / 50;
       y += shading.normal.y / 50;
@@ -95,12 +105,10 @@ TEST(BevelShader, leans_towards_the_neighbouring_face_and_more_so_nearer_to_the_
     }
     EXPECT_GT(x, last + 0.005F) << distance;
     EXPECT_NEAR(y, 0, 0.01F) << distance;
-    EXPECT_GT(z, x) << distance;
+    EXPECT_GT(z, x - 0.01F) << distance;
     last = x;
   }
-  // The ideal at the edge itself would be 1/√2: the averaged normals fall short of it.
-  EXPECT_GT(last, 0.3F);
-  EXPECT_LT(last, 0.70711F);
+  EXPECT_NEAR(last, std::sqrt(0.5F), 0.01F);  // at the edge itself: halfway
 }
 
 // The closed form for the mean over all directions: half the cube of directions goes towards the edge.
@@ -176,7 +184,7 @@ TEST(BevelShader, does_not_catch_faces_beyond_its_reach_at_a_concave_edge) {
 }
 
 TEST(BevelShader, meets_the_same_object_only) {
-  Scene scene = cube_scene(shader_settings(0.1));
+  Scene scene = cube_scene(steep_settings(0.1));
   // A tiny cube within the first, just below the surface.
   test::add_object(scene, test::make_box_mesh(Vec3d(0.02)), test::make_lambert(0.5F),
                    test::translation({0, 0, 0.95}));
