@@ -140,9 +140,8 @@ TomlObjects::Placement TomlObjects::parse_placement(TomlTableReader& reader) {
   }
   placement.world_from_object = parse_transform(reader);
   if (const TomlMember* round = reader.find("round")) {
-    RoundingSettings defaults;
-    defaults.method = RoundMethod::exact;
-    if (context_.scene.rounding) defaults = *context_.scene.rounding;
+    RoundingSettings defaults = context_.scene.rounding.value_or(RoundingSettings{});
+    if (defaults.method == RoundMethod::none) defaults.method = RoundMethod::exact;
     placement.rounding = parse_toml_rounding(*round, defaults, context_.problems);
   }
   return placement;

@@ -72,7 +72,7 @@ std::optional<RoundingSettings> parse_toml_rounding(const TomlMember& member,
     return std::nullopt;
   }
   RoundingSettings settings = defaults;
-  settings.method = parsed->method;
+  if (parsed->method == RoundMethod::none) settings.method = RoundMethod::none;
   settings.radius = parsed->radius;
   return settings;
 }

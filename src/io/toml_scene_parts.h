@@ -29,7 +29,8 @@ struct TomlSceneContext {
 // The table, or nothing and a report if the value is no table.
 const TomlTable* as_toml_table(const TomlMember& member, TomlProblems& problems);
 
-// Rounding as a table, a number or a text like "12%"; what the table leaves out comes from `defaults`.
+// Rounding as a table, a number or a text like "12%"; what it leaves out comes from
+// `defaults`, whose method is not none.
 std::optional<RoundingSettings> parse_toml_rounding(const TomlMember& member,
                                                     const RoundingSettings& defaults,
                                                     TomlProblems& problems);

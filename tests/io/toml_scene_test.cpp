@@ -380,6 +380,40 @@ shape = "box"
   EXPECT_FALSE(scene.objects[4].rounding);
 }
 
+TEST(TomlScene, rounds_an_object_that_says_so_in_a_scene_that_does_not) {
+  const Scene scene = read("round = \"none\"\n" + kBox + "round = { radius = 1 }\n" + kBox);
+  EXPECT_EQ(scene.rounding->method, RoundMethod::none);
+  EXPECT_EQ(scene.objects.at(0).rounding->method, RoundMethod::exact);
+  EXPECT_FALSE(scene.objects.at(1).rounding);
+}
+
+TEST(TomlScene, keeps_the_scenes_method_when_an_object_gives_a_radius_alone) {
+  const Scene scene =
+      read("round = { method = \"mesh\", subdivisions = 5 }\n" + kBox + "round = 0.5\n");
+  EXPECT_EQ(scene.objects.at(0).rounding->method, RoundMethod::mesh);
+  EXPECT_EQ(scene.objects.at(0).rounding->subdivisions, 5);
+  EXPECT_EQ(std::get<double>(scene.objects.at(0).rounding->radius), 0.5);
+}
+
+TEST(TomlScene, reads_the_example_of_its_document) {
+  std::ifstream file(std::filesystem::path(ARRIS_SOURCE_DIR) / "docs/scene-format.md");
+  const std::string text{std::istreambuf_iterator<char>(file), {}};
+  const std::size_t begin = text.find("```toml\n") + 8;
+  ASSERT_GT(begin, 8U);
+  const Scene scene =
+      read_toml_scene(text.substr(begin, text.find("```", begin) - begin), "example.toml",
+                      "/nonexistent", [](const std::filesystem::path& path) {
+                        EXPECT_EQ(path.filename(), "bracket.stl");
+                        return two_part_model();
+                      });
+  EXPECT_EQ(test::problem_of(scene), "");
+  EXPECT_EQ(scene.objects.size(), 4U);
+  EXPECT_EQ(scene.objects[2].name, "plinth");
+  EXPECT_EQ(scene.materials[scene.objects[0].material.index].name, "brass");
+  EXPECT_EQ(scene.lights.size(), 1U);
+  EXPECT_TRUE(scene.camera && scene.environment && scene.rounding);
+}
+
 // ------------------------------------------------------------------------------------------- errors
 
 TEST(TomlScene, names_the_nearest_key_for_an_unknown_one) {
