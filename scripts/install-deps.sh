@@ -13,7 +13,7 @@ packages=(
   # pictures
   libopenexr-dev libpng-dev libturbojpeg0-dev libstb-dev
   # models, scenes, JSON
-  libtinygltf-dev libtinyobjloader-dev libtomlplusplus-dev nlohmann-json3-dev
+  nlohmann-json3-dev
   # geometry
   libqhull-dev
   # command line, text, log

@@ -1,166 +1,215 @@
-// toml_parse.cpp — toml++'s tree as ours, so that only this file needs its headers
+// toml_parse.cpp — tables, arrays and their values
+// Source     TOML v1.0.0 (2021): which tables may be defined twice is its section "Table"
 #include <fmt/format.h>
 
-#include <algorithm>
+#include <map>
+#include <memory>
+#include <utility>
 
 #include "arris/error.h"
 #include "base/utf8_text.h"
 #include "io/toml_document.h"
-
-// toml++ 3.3 asserts what a file may break ("[=" in parse_key()) and then reports it as an error. With
-// NDEBUG its assertions become promises to the compiler; so they are nothing here, in every build.
-#undef NDEBUG
-#define TOML_ASSERT(expr) static_assert(true)
-#include <toml++/toml.h>
+#include "io/toml_scanner.h"
 
 namespace arris {
 namespace {
 
-// No scene needs more; they bound the recursion of the parser and of destructors.
-constexpr int kMaxBrackets = 32;
-constexpr int kMaxDots = 8;
+// No scene needs more; they bound the recursion of parsing and of destructors.
+constexpr int kMaxDepth = 32;
+constexpr std::size_t kMaxKeyParts = 8;
 
-constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
+// A value while the file is being read: tables may still grow.
+struct Node {
+  enum class Kind {
+    implicit,  // a table that only longer headers have named: [a.b] makes a
+    header,    // [a]
+    dotted,    // a.b = 1 makes a
+    tables,    // [[a]]
+    value,     // also arrays and inline tables: complete
+  };
+  Kind kind = Kind::value;
+  TomlPlace key_place;
+  TomlValue value;
+  std::map<std::string, std::size_t, std::less<>> index;  // into members
+  std::vector<std::pair<std::string, std::unique_ptr<Node>>> members;
+  std::vector<std::unique_ptr<Node>> elements;  // of kind tables
 
-TomlPlace place_of(const toml::source_region& region) {
-  return {std::max(region.begin.line, 1U), std::max(region.begin.column, 1U)};
+  Node* find(const std::string& key) {
+    const auto found = index.find(key);
+    return found == index.end() ? nullptr : members[found->second].second.get();
+  }
+  Node& add(const std::string& key, Kind new_kind, TomlPlace place) {
+    index.emplace(key, members.size());
+    auto& node = members.emplace_back(key, std::make_unique<Node>()).second;
+    node->kind = new_kind;
+    node->key_place = node->value.place = place;
+    return *node;
+  }
+};
+
+TomlValue finish(Node& node) {
+  if (node.kind == Node::Kind::tables) {
+    TomlArray array;
+    for (const auto& element : node.elements) array.push_back(finish(*element));
+    node.value.data = std::move(array);
+  } else if (node.kind != Node::Kind::value) {
+    TomlTable table;
+    table.reserve(node.members.size());
+    for (auto& [key, member] : node.members) {
+      const TomlPlace place = member->key_place;
+      table.push_back({std::move(key), place, finish(*member)});
+    }
+    node.value.data = std::move(table);
+  }
+  return std::move(node.value);
 }
 
-// Walks the text once before the parser sees it: bounds its nesting, and keeps away from it what it
-// mishandles (toml++ 3.3 meets undefined behaviour at accented letters and control characters outside
-// of strings; TOML allows neither).
-class TextCheck {
- public:
-  TextCheck(std::string_view text, const std::string& where) : text_(text), where_(where) {}
+struct KeyPart {
+  std::string text;
+  TomlPlace place;
+};
 
-  void run() {
-    for (; at_ < text_.size(); ++at_) {
-      const char c = text_[at_];
-      if (c == '"' || c == '\'') {
-        skip_string(c);
-      } else if (c == '#') {
-        skip_comment();
+class Parser {
+ public:
+  Parser(std::string_view text, const std::string& where) : scanner_(text, where) {
+    root_.kind = Node::Kind::header;
+  }
+
+  TomlTable parse() {
+    Node* table = &root_;
+    for (scanner_.skip_blanks_and_lines(); !scanner_.at_end(); scanner_.skip_blanks_and_lines()) {
+      if (scanner_.peek() == '[') {
+        table = &parse_header();
       } else {
-        check_outside(c);
+        parse_member(*table);
       }
+      scanner_.end_line();
     }
+    return std::get<TomlTable>(finish(root_).data);
   }
 
  private:
-  void check_outside(char c) {
-    check_control(c);
-    if (std::uint8_t(c) >= 0x80) fail("a letter that is not ASCII must stand in quotes");
-    if (c == '[' || c == '{') ++brackets_;
-    if ((c == ']' || c == '}') && brackets_ > 0) --brackets_;
-    if (c == '.') {
-      ++dots_;
-    } else if (std::string_view("=,[]{}\n").find(c) != std::string_view::npos) {
-      dots_ = 0;
-    }
-    if (brackets_ > kMaxBrackets) fail(fmt::format("nested more than {} deep", kMaxBrackets));
-    if (dots_ > kMaxDots) fail(fmt::format("the key has more than {} dots", kMaxDots));
-  }
-
-  // Also counts lines.
-  void check_control(char c) {
-    if (c == '\n') {
-      ++line_;
-      line_start_ = at_ + 1;
-    } else if ((std::uint8_t(c) < 0x20 && c != '\t' && c != '\r') || c == 0x7F) {
-      fail("a control character; only tabs and line ends may stand in the file");
-    }
-  }
-
-  void skip_comment() {
-    while (at_ < text_.size() && text_[at_] != '\n') check_control(text_[at_++]);
-    if (at_ < text_.size()) check_outside('\n');
-  }
-
-  // Leaves at_ on the last character of the string.
-  void skip_string(char quote) {
-    const bool is_long = stands_three_times(quote);
-    for (at_ += is_long ? 3 : 1; at_ < text_.size(); ++at_) {
-      const char c = text_[at_];
-      check_control(c);
-      if (c == '\n' && !is_long) return;  // the parser reports it
-      if (c == '\\' && quote == '"') {
-        if (++at_ < text_.size()) check_control(text_[at_]);
-      } else if (c == quote && !is_long) {
-        return;
-      } else if (c == quote && stands_three_times(quote)) {
-        at_ += 2;
-        // A long string may end in one or two quotes of its own.
-        for (int i = 0; i < 2 && at_ + 1 < text_.size() && text_[at_ + 1] == quote; ++i) ++at_;
-        return;
+  std::vector<KeyPart> parse_key() {
+    std::vector<KeyPart> key;
+    do {
+      scanner_.skip_blanks();
+      const TomlPlace place = scanner_.place();
+      if (key.size() == kMaxKeyParts) {
+        scanner_.fail(fmt::format("a key of more than {} parts", kMaxKeyParts));
       }
+      key.push_back({scanner_.scan_key_part(), place});
+      scanner_.skip_blanks();
+    } while (scanner_.skip("."));
+    return key;
+  }
+
+  [[noreturn]] void fail_defined(const KeyPart& part) {
+    scanner_.fail_at(part.place, in_quotes(part.text) + " is already defined above");
+  }
+
+  // [a.b] and [[a.b]]
+  Node& parse_header() {
+    const TomlPlace place = scanner_.place();
+    const bool is_array = scanner_.skip("[[");
+    if (!is_array) scanner_.expect("[", "[");
+    const std::vector<KeyPart> key = parse_key();
+    scanner_.expect(is_array ? "]]" : "]", is_array ? "]]" : "]");
+    Node* table = &root_;
+    for (std::size_t i = 0; i + 1 < key.size(); ++i) table = &enter(*table, key[i]);
+    Node& node = is_array ? append_element(*table, key.back()) : define(*table, key.back());
+    node.value.place = place;
+    return node;
+  }
+
+  // The table that a part of a header but its last names.
+  Node& enter(Node& table, const KeyPart& part) {
+    Node* found = table.find(part.text);
+    if (found == nullptr) return table.add(part.text, Node::Kind::implicit, part.place);
+    if (found->kind == Node::Kind::value) fail_defined(part);
+    return found->kind == Node::Kind::tables ? *found->elements.back() : *found;
+  }
+
+  Node& define(Node& table, const KeyPart& part) {
+    Node* found = table.find(part.text);
+    if (found == nullptr) return table.add(part.text, Node::Kind::header, part.place);
+    if (found->kind != Node::Kind::implicit) fail_defined(part);
+    found->kind = Node::Kind::header;
+    found->key_place = part.place;
+    return *found;
+  }
+
+  Node& append_element(Node& table, const KeyPart& part) {
+    Node* found = table.find(part.text);
+    if (found == nullptr) found = &table.add(part.text, Node::Kind::tables, part.place);
+    if (found->kind != Node::Kind::tables) fail_defined(part);
+    Node& element = *found->elements.emplace_back(std::make_unique<Node>());
+    element.kind = Node::Kind::header;
+    return element;
+  }
+
+  // a.b = value
+  void parse_member(Node& table) {
+    const std::vector<KeyPart> key = parse_key();
+    scanner_.expect("=", "= and a value");
+    scanner_.skip_blanks();
+    Node* owner = &table;
+    for (std::size_t i = 0; i + 1 < key.size(); ++i) {
+      Node* found = owner->find(key[i].text);
+      if (found == nullptr) found = &owner->add(key[i].text, Node::Kind::dotted, key[i].place);
+      if (found->kind != Node::Kind::dotted) fail_defined(key[i]);
+      owner = found;
     }
+    if (owner->find(key.back().text) != nullptr) fail_defined(key.back());
+    TomlValue value = parse_value();
+    owner->add(key.back().text, Node::Kind::value, key.back().place).value = std::move(value);
   }
 
-  [[nodiscard]] bool stands_three_times(char quote) const {
-    return text_.substr(at_, 3) == std::string(3, quote);
+  TomlValue parse_value() {
+    const char c = scanner_.peek();
+    if (c != '[' && c != '{') return scanner_.scan_scalar();
+    if (++depth_ > kMaxDepth) scanner_.fail(fmt::format("nested more than {} deep", kMaxDepth));
+    TomlValue value = c == '[' ? parse_array() : parse_inline_table();
+    --depth_;
+    return value;
   }
 
-  [[noreturn]] void fail(const std::string& what) const {
-    throw Error(Error::Kind::input, fmt::format("{}:{}:{}", where_, line_, at_ - line_start_ + 1),
-                what);
+  TomlValue parse_array() {
+    TomlValue value;
+    value.place = scanner_.place();
+    TomlArray elements;
+    scanner_.expect("[", "[");
+    for (scanner_.skip_blanks_and_lines(); !scanner_.skip("]");) {
+      elements.push_back(parse_value());
+      scanner_.skip_blanks_and_lines();
+      if (scanner_.peek() != ']') scanner_.expect(",", "a comma or ]");
+      scanner_.skip_blanks_and_lines();
+    }
+    value.data = std::move(elements);
+    return value;
   }
 
-  std::string_view text_;
-  const std::string& where_;
-  std::size_t at_ = 0, line_ = 1, line_start_ = 0;
-  int brackets_ = 0, dots_ = 0;
+  TomlValue parse_inline_table() {
+    Node table;
+    table.kind = Node::Kind::header;
+    table.value.place = scanner_.place();
+    scanner_.expect("{", "{");
+    scanner_.skip_blanks();
+    if (scanner_.skip("}")) return finish(table);
+    do {
+      scanner_.skip_blanks();
+      parse_member(table);
+      scanner_.skip_blanks();
+    } while (scanner_.skip(","));
+    scanner_.expect("}", "a comma or }");
+    return finish(table);
+  }
+
+  TomlScanner scanner_;
+  Node root_;
+  int depth_ = 0;
 };
 
-TomlValue convert(const toml::node& node);
-
-TomlTable convert(const toml::table& table) {
-  TomlTable members;
-  members.reserve(table.size());
-  for (const auto& [key, value] : table) {
-    members.push_back({std::string(key.str()), place_of(key.source()), convert(value)});
-  }
-  return members;
-}
-
-TomlValue convert(const toml::node& node) {
-  TomlValue value;
-  value.place = place_of(node.source());
-  switch (node.type()) {
-    case toml::node_type::table:
-      value.data = convert(*node.as_table());
-      break;
-    case toml::node_type::array: {
-      TomlArray elements;
-      for (const toml::node& element : *node.as_array()) elements.push_back(convert(element));
-      value.data = std::move(elements);
-      break;
-    }
-    case toml::node_type::string:
-      value.data = node.as_string()->get();
-      break;
-    case toml::node_type::integer:
-      value.data = node.as_integer()->get();
-      break;
-    case toml::node_type::floating_point:
-      value.data = node.as_floating_point()->get();
-      break;
-    case toml::node_type::boolean:
-      value.data = node.as_boolean()->get();
-      break;
-    default:
-      value.data = TomlDate{};
-      break;
-  }
-  return value;
-}
-
-// The parser's message may quote what it read.
-std::string on_one_line(std::string_view text) {
-  std::string line(text.substr(0, 300));
-  std::ranges::replace_if(
-      line, [](char c) { return std::uint8_t(c) < 0x20 || c == 0x7F; }, ' ');
-  return line;
-}
+constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
 
 }  // namespace
 
@@ -169,14 +218,7 @@ TomlTable parse_toml(std::string_view text, const std::string& where) {
     throw Error(Error::Kind::input, where, "is not UTF-8 text; save it as UTF-8");
   }
   if (text.starts_with(kByteOrderMark)) text.remove_prefix(kByteOrderMark.size());
-  TextCheck(text, where).run();
-  try {
-    return convert(toml::parse(text));
-  } catch (const toml::parse_error& error) {
-    const TomlPlace place = place_of(error.source());
-    throw Error(Error::Kind::input, fmt::format("{}:{}:{}", where, place.line, place.column),
-                on_one_line(error.description()));
-  }
+  return Parser(text, where).parse();
 }
 
 }  // namespace arris

@@ -494,14 +494,9 @@ TEST(TomlScene, refuses_text_that_is_not_toml) {
   EXPECT_THAT(refusal("[=]\n"), StartsWith("s.toml:1:2: "));
   EXPECT_THAT(refusal(std::string("[\0camera]\n", 10)), StartsWith("s.toml:1:2: "));
   EXPECT_THAT(refusal("up = 1\n \u02DEa = 1\n"),
-              AllOf(StartsWith("s.toml:2:2: "), HasSubstr("quotes")));
+              AllOf(StartsWith("s.toml:2:2: "), HasSubstr("quote it")));
   EXPECT_THAT(refusal("a = 'x\x01'\n"), StartsWith("s.toml:1:7: "));
   EXPECT_THAT(refusal("a = \"\xFF\"\n"), HasSubstr("UTF-8"));
-  EXPECT_THAT(refusal("a = " + std::string(100000, '[')), HasSubstr("nested"));
-  std::string dotted = "a";
-  for (int i = 0; i < 100000; ++i) dotted += ".a";
-  EXPECT_THAT(refusal(dotted + " = 1"), HasSubstr("dots"));
-  EXPECT_THAT(refusal("[" + dotted + "]"), HasSubstr("dots"));
 }
 
 TEST(TomlScene, takes_every_kind_of_string_and_a_byte_order_mark) {
