@@ -7,7 +7,7 @@
 // Limits     float coordinates: a scene far from its origin loses precision in proportion
 // Errors     Error::failed when memory runs out
 // Cost       build linear in the triangles (times log), parallel; const afterwards
-// Embree     its headers are included by embree_scene.cpp and render/trace.cpp, nowhere else
+// Embree     its headers are included by embree_scene.cpp and render/embree_hit.h, nowhere else
 #pragma once
 
 #include <cstdint>

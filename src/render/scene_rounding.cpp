@@ -9,6 +9,7 @@
 #include "arris/error.h"
 #include "base/parallel_for.h"
 #include "render/auto_radius.h"
+#include "render/crowded_arcs.h"
 
 namespace arris {
 namespace {
@@ -50,7 +51,7 @@ class Maker {
     parallel_for(tasks_.size(), {.grain = 1, .threads = options_.threads},
                  [&](std::size_t i) { build(tasks_[i]); });
     for (Task& task : tasks_) attach(task);
-    if (out_.any) find_crowded();
+    if (out_.any) find_crowded_arcs(geometry_, out_);
     out_.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     return std::move(out_);
   }
@@ -125,17 +126,14 @@ class Maker {
         g.band_begin = task.result->data().band_begin.data();
         g.bands = task.result->data().bands.data();
       }
-      g.in_world_space = !r.instanced;
-      g.winding_is_outward =
-          g.in_world_space && std::ranges::none_of(task.result->data().solids, &Solid::turned);
+      g.any_turned = std::ranges::any_of(task.result->data().solids, &Solid::turned);
       double scale = 1;
       if (task.in_object_space) {
-        g.rounding_from_world = inverse(object.world_from_object);
         // A similarity's own linear part turns normals, mirrored or not.
-        g.world_from_rounding_normal = object.world_from_object.linear;
+        set_frame(g, {inverse(object.world_from_object), object.world_from_object.linear});
         scale = *similarity_scale(object.world_from_object.linear);
       } else if (r.instanced) {
-        g.rounding_from_world = {{}, -object.world_from_object.translation};
+        set_frame(g, {{{}, -object.world_from_object.translation}, {}});
       }
       out_.edges += report.rounded_edges;
       out_.corners += report.rounded_corners;
@@ -145,55 +143,9 @@ class Maker {
     out_.roundings.push_back(std::move(task.result));
   }
 
-  struct Box {
-    Vec3d low, high;
-    std::uint32_t geometry;
-  };
-
-  // World boxes of all solids; where a rounded solid's overlaps another's, its geometry is crowded.
-  void find_crowded() {
-    std::vector<Box> boxes = solid_boxes();
-    std::ranges::sort(boxes, [](const Box& a, const Box& b) { return a.low.x < b.low.x; });
-    for (std::size_t i = 0; i < boxes.size(); ++i) {
-      for (std::size_t j = i + 1; j < boxes.size() && boxes[j].low.x < boxes[i].high.x; ++j) {
-        if (!overlap(boxes[i], boxes[j])) continue;
-        out_.geometries[boxes[i].geometry].crowded = true;
-        out_.geometries[boxes[j].geometry].crowded = true;
-      }
-    }
-  }
-
-  static bool overlap(const Box& a, const Box& b) {
-    // Solids that touch don't reach into each other.
-    const Vec3d slack = min(a.high - a.low, b.high - b.low) * 1e-4;
-    for (int axis = 0; axis < 3; ++axis) {
-      if (a.high[axis] <= b.low[axis] + slack[axis]) return false;
-      if (b.high[axis] <= a.low[axis] + slack[axis]) return false;
-    }
-    return true;
-  }
-
-  [[nodiscard]] std::vector<Box> solid_boxes() const {
-    std::vector<Box> boxes;
-    for (std::uint32_t i = 0; i < geometry_.embree.records().size(); ++i) {
-      const GeometryRecord& r = record(i);
-      if (r.triangles == nullptr) continue;
-      const RoundedGeometry& g = out_.geometries[i];
-      const std::size_t count = g.rounding != nullptr ? g.rounding->data().solids.size() : 1;
-      const std::size_t first = boxes.size();
-      boxes.resize(first + count, {Vec3d(INFINITY), Vec3d(-INFINITY), i});
-      for (std::uint32_t t = 0; t < r.triangle_count; ++t) {
-        const std::uint32_t solid = g.rounding != nullptr ? g.rounding->solid_of(t) : 0;
-        if (solid == kNone) continue;
-        Box& box = boxes[first + solid];
-        const WorldTriangle w = world_triangle(scene_, r, t);
-        for (const Vec3f& p : {w.p0, w.p1, w.p2}) {
-          box.low = min(box.low, Vec3d(p));
-          box.high = max(box.high, Vec3d(p));
-        }
-      }
-    }
-    return boxes;
+  void set_frame(RoundedGeometry& g, const RoundingFrame& frame) {
+    out_.frames.push_back(std::make_unique<const RoundingFrame>(frame));
+    g.frame = out_.frames.back().get();
   }
 
   const SceneGeometry& geometry_;

@@ -18,20 +18,36 @@
 
 namespace arris {
 
-// Rounding of one geometry, by EmbreeScene::records() index. Null pointers: not rounded.
+// How an instance's rounding lies in the world.
+struct RoundingFrame {
+  Affine3d rounding_from_world;
+  Mat3d world_from_rounding_normal;
+};
+
+// Rounding of one geometry, by EmbreeScene::records() index. All null: not rounded. Small: every hit reads it.
 struct RoundedGeometry {
   const std::uint32_t* band_begin = nullptr;  // null also where a kd-tree detects
   const Band* bands = nullptr;
   const Rounding* rounding = nullptr;
-  bool in_world_space = true;
-  bool winding_is_outward = false;  // in world space, of every shell
-  // Other solids reach into the void between sharp and rounded edges: look for them before it is crossed.
-  bool crowded = false;
-  Affine3d rounding_from_world;
-  Mat3d world_from_rounding_normal;
+  const RoundingFrame* frame = nullptr;  // null: world space
+  // Arcs with other solids in their void, between the sharp and the rounded edge; null: none.
+  const std::vector<bool>* crowded = nullptr;
+  bool any_turned = false;  // some shell's winding points inward
 
   [[nodiscard]] bool is_kept(std::uint32_t triangle, float u, float v) const {
     return band_begin != nullptr && is_kept_by_bands(band_begin, bands, triangle, u, v);
+  }
+  // arc of a moved hit; corners have none.
+  [[nodiscard]] bool is_crowded(std::uint32_t arc) const {
+    return crowded != nullptr && (arc == kNone || (*crowded)[arc]);
+  }
+  [[nodiscard]] Ray local_ray(Vec3f origin, Vec3f direction) const {
+    const Ray world{Vec3d(origin), Vec3d(direction)};
+    if (frame == nullptr) [[likely]] {
+      return world;
+    }
+    return {transform_point(frame->rounding_from_world, world.origin),
+            transform_vector(frame->rounding_from_world, world.direction)};
   }
 };
 
@@ -45,6 +61,8 @@ struct BevelShader {
 struct SceneRounding {
   std::vector<RoundedGeometry> geometries;
   std::vector<std::shared_ptr<const Rounding>> roundings;
+  std::vector<std::unique_ptr<const RoundingFrame>> frames;
+  std::vector<std::unique_ptr<std::vector<bool>>> crowded;  // per geometry
   bool any = false;
   std::vector<BevelShader> shaders;  // by geometry; empty if none has one
   // What was built, for PrepareStats.

@@ -1,0 +1,205 @@
+#include "render/rounded_trace.h"
+
+#include <algorithm>
+#include <limits>
+
+namespace arris {
+namespace {
+
+RayStart start_of(const RoundedGeometry& g, const TraceRay& ray, const Candidate& c,
+                  std::uint32_t solid) {
+  if (ray.from.geometry != c.geometry || g.rounding->solid_of(ray.from.triangle) != solid) {
+    return RayStart::unknown;
+  }
+  return ray.from.side == Side::outside ? RayStart::outside : RayStart::inside;
+}
+
+// A ray that left this solid outward meets it from inside: it leaves the void in which it started.
+bool leaves_own_void(const RoundedGeometry& g, const TraceRay& ray, const Candidate& c,
+                     const Solid& solid) {
+  if (solid.closed) return true;
+  return ray.from.feature != Feature::face && !g.is_kept(c.triangle, c.u, c.v);
+}
+
+// Drops hits that the ray passes.
+void filter_passed(const RTCFilterFunctionNArguments* args) {
+  if (args->valid[0] != -1) return;
+  auto* context = reinterpret_cast<FilterContext*>(args->context);
+  const auto* hit = reinterpret_cast<const RTCHit*>(args->hit);
+  const auto* query = reinterpret_cast<const RTCRay*>(args->ray);
+  const bool skipped =
+      hit->primID == context->skip_triangle && geometry_of(*hit) == context->skip_geometry;
+  if (skipped || is_departure(*hit, context->ray->from) ||
+      is_rounded_away(*context, *hit, query->tfar)) {
+    args->valid[0] = 0;
+  }
+}
+
+// Vertex normals of one side of a rounded edge, at the point where its cylinder touches the face; in world space.
+Vec3f side_normal(const SceneGeometry& geometry, const GeometryRecord& record,
+                  const EdgeBlend::Side& side, Vec3f world_point, Vec3f world_normal) {
+  const WorldTriangle w = world_triangle(geometry.scene, record, side.triangle);
+  const Vec3d e1 = Vec3d(w.p1) - Vec3d(w.p0);
+  const Vec3d e2 = Vec3d(w.p2) - Vec3d(w.p0);
+  const Vec3d p = Vec3d(world_point) - Vec3d(w.p0);
+  const Vec3d n = cross(e1, e2);
+  const double doubled_area = length_squared(n);
+  if (!(doubled_area > 0)) return world_normal;
+  const auto u = float(dot(cross(p, e2), n) / doubled_area);
+  const auto v = float(dot(cross(e1, p), n) / doubled_area);
+  return interpolated_normal(record, record.triangles[side.triangle], u, v, world_normal);
+}
+
+// What smooth shading makes of the normal on a rounded edge.
+Vec3f blended_normal(const SceneGeometry& geometry, const RoundedGeometry& g, const SurfaceHit& hit,
+                     const RoundedHit& rounded) {
+  const GeometryRecord& record = geometry.embree.records()[hit.geometry];
+  // World space only: instances of a mesh with vertex normals keep the cylinder's own.
+  if (record.normals == nullptr || g.frame != nullptr) return hit.geometric_normal;
+  const std::optional<EdgeBlend> blend = g.rounding->blend_of(rounded, Vec3d(hit.position));
+  if (!blend) return hit.geometric_normal;
+  Vec3f sum;
+  for (const EdgeBlend::Side& side : {blend->a, blend->b}) {
+    sum += side_normal(geometry, record, side, Vec3f(side.point), Vec3f(side.face_normal)) *
+           float(side.weight);
+  }
+  // Vertex normals that disagree with the faces must not turn the surface around.
+  return dot(sum, hit.geometric_normal) > 0.5F * length(sum) ? normalize(sum)
+                                                             : hit.geometric_normal;
+}
+
+}  // namespace
+
+Verdict judge(const RoundedGeometry& g, const TraceRay& ray, const Candidate& c) {
+  Verdict verdict;
+  const Rounding::Data& data = g.rounding->data();
+  const std::uint32_t face_index = data.face[c.triangle];
+  if (face_index == kNone) return verdict;
+  const Face& face = data.faces[face_index];
+  const Solid& solid = data.solids[face.solid];
+  const Ray local = g.local_ray(ray.origin, ray.direction);
+  verdict.entering = dot(face.normal, local.direction) < 0;
+  RayStart start = RayStart::unknown;
+  if (!verdict.entering) {
+    start = start_of(g, ray, c, face.solid);
+    if (start == RayStart::outside && leaves_own_void(g, ray, c, solid)) {
+      verdict.outcome = Resolution::Outcome::passed;
+      return verdict;
+    }
+    if (start == RayStart::outside) start = RayStart::unknown;
+  }
+  // From inside, a kept hit may still be that of a ray that starts in the void.
+  const bool settled = verdict.entering || start == RayStart::inside || !solid.exact;
+  if (settled && g.is_kept(c.triangle, c.u, c.v)) return verdict;
+  const Resolution r = g.rounding->resolve(local, {c.triangle, c.u, c.v, c.t}, start);
+  verdict.outcome = r.outcome;
+  verdict.hit = r.hit;
+  if (r.outcome != Resolution::Outcome::moved) return verdict;
+  if (r.hit.t < ray.t_min && !verdict.entering) {
+    // Behind the start: a ray from the void is outside; a ray from inside grazes its own surface.
+    verdict.hit.t = ray.t_min;
+    if (start != RayStart::inside) verdict.outcome = Resolution::Outcome::passed;
+  }
+  if (g.frame != nullptr) {
+    verdict.hit.normal = normalize(g.frame->world_from_rounding_normal * r.hit.normal);
+  }
+  return verdict;
+}
+
+std::optional<SurfaceHit> RoundedTrace::settle(const RTCRayHit& first) const {
+  const RoundedGeometry& g = rounding_.geometries[geometry_of(first.hit)];
+  const Verdict verdict = judge(g, ray_, candidate_of(first.hit, first.ray.tfar));
+  switch (verdict.outcome) {
+    case Resolution::Outcome::kept:
+      return make_surface_hit(geometry_, ray_, first);
+    case Resolution::Outcome::moved:
+      return moved(first, verdict);
+    case Resolution::Outcome::passed:
+      break;
+  }
+  return passed(first, verdict);
+}
+
+std::optional<SurfaceHit> RoundedTrace::trace_from_void() const {
+  const std::optional<Found> found = trace_filtered(ray_, nullptr);
+  if (!found) return std::nullopt;
+  return finish(*found);
+}
+
+std::optional<SurfaceHit> RoundedTrace::moved(const RTCRayHit& query,
+                                              const Verdict& verdict) const {
+  const RoundedGeometry& g = rounding_.geometries[geometry_of(query.hit)];
+  if (verdict.entering && g.is_crowded(verdict.hit.arc) && verdict.hit.t > double(query.ray.tfar)) {
+    // Something else may reach into the void that the ray crosses first.
+    TraceRay across = ray_;
+    across.t_min = query.ray.tfar;
+    across.t_max = std::min(ray_.t_max, float(verdict.hit.t));
+    if (const auto other = trace_filtered(across, &query.hit)) return finish(*other);
+  }
+  if (verdict.hit.t >= double(ray_.t_max)) return std::nullopt;
+  return move_hit(query, verdict);
+}
+
+std::optional<SurfaceHit> RoundedTrace::passed(const RTCRayHit& query,
+                                               const Verdict& verdict) const {
+  TraceRay rest = ray_;
+  rest.t_min = query.ray.tfar;
+  const std::optional<Found> next = trace_filtered(rest, &query.hit);
+  if (!next) return std::nullopt;
+  // Where the rounding has no surface though the ray crosses the solid, its face stands instead of a hole.
+  if (verdict.entering && leaves_kept(query, next->query)) {
+    return make_surface_hit(geometry_, ray_, query);
+  }
+  return finish(*next);
+}
+
+// The next hit is the way out of the same solid, through what is kept of it.
+bool RoundedTrace::leaves_kept(const RTCRayHit& entry, const RTCRayHit& exit) const {
+  if (geometry_of(entry.hit) != geometry_of(exit.hit)) return false;
+  const RoundedGeometry& g = rounding_.geometries[geometry_of(entry.hit)];
+  const std::uint32_t solid = g.rounding->solid_of(entry.hit.primID);
+  if (solid != g.rounding->solid_of(exit.hit.primID) || g.rounding->is_exact(solid)) return false;
+  const Ray local = g.local_ray(ray_.origin, ray_.direction);
+  return dot(g.rounding->face_normal(exit.hit.primID), local.direction) > 0;
+}
+
+SurfaceHit RoundedTrace::finish(const Found& found) const {
+  if (found.verdict.outcome == Resolution::Outcome::moved) {
+    return move_hit(found.query, found.verdict);
+  }
+  SurfaceHit hit = make_surface_hit(geometry_, ray_, found.query);
+  hit.rounding_seen = true;
+  return hit;
+}
+
+SurfaceHit RoundedTrace::move_hit(const RTCRayHit& query, const Verdict& verdict) const {
+  SurfaceHit hit = make_surface_hit(geometry_, ray_, query);
+  hit.t = float(verdict.hit.t);
+  hit.position = Vec3f(Vec3d(ray_.origin) + Vec3d(ray_.direction) * verdict.hit.t);
+  hit.geometric_normal = Vec3f(verdict.hit.normal);
+  hit.side = verdict.entering ? Side::outside : Side::inside;
+  hit.feature = verdict.hit.feature;
+  hit.rounding_seen = true;
+  hit.shading_normal =
+      blended_normal(geometry_, rounding_.geometries[hit.geometry], hit, verdict.hit);
+  return hit;
+}
+
+std::optional<RoundedTrace::Found> RoundedTrace::trace_filtered(const TraceRay& range,
+                                                                const RTCHit* without) const {
+  FilterContext context = make_filter_context(geometry_, rounding_, ray_);
+  context.base.filter = filter_passed;
+  if (without != nullptr) {
+    context.skip_geometry = geometry_of(*without);
+    context.skip_triangle = without->primID;
+  }
+  RTCRayHit query;
+  query.ray = make_ray(range);
+  query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+  query.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
+  rtcIntersect1(geometry_.embree.handle(), &context.base, &query);
+  if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return std::nullopt;
+  return Found{query, context.last};
+}
+
+}  // namespace arris

@@ -1,0 +1,118 @@
+// rounded_trace.h — rays among rounded objects
+// What       A hit on a rounded object stands, moves onto an edge or corner, or the ray passes between the sharp and the
+//            rounded surface (arris/rounding.h). Closest hits are traced without a filter, as most hits are kept;
+//            a ray that passes is traced again with a filter that drops what it passes. It then sees what
+//            touches the object from outside at the very distance where it leaves (the main picture of the
+//            paper, its Fig. 9), with no resume distance and no tolerance. A ray that leaves a rounded edge starts in
+//            the void, where the first hit is always its own solid's back: it is traced with the filter at once.
+// Guarantee  never a hole: a solid that is not rounded exactly is passed only where the ray enters and leaves
+//            within what the rounding takes away; elsewhere its face stands
+// Included   by trace.cpp only
+// Source     Courtin et al. §4, Fig. 7
+#pragma once
+
+#include "render/embree_hit.h"
+#include "render/scene_rounding.h"
+
+namespace arris {
+
+struct Candidate {
+  std::uint32_t geometry = kNoGeometry;
+  std::uint32_t triangle = 0;
+  float u = 0, v = 0, t = 0;
+};
+
+inline Candidate candidate_of(const RTCHit& hit, float t) {
+  return {geometry_of(hit), hit.primID, hit.u, hit.v, t};
+}
+
+struct Verdict {
+  Resolution::Outcome outcome = Resolution::Outcome::kept;
+  RoundedHit hit;         // if moved: t of the ray, normal in world space
+  bool entering = false;  // of a resolved hit
+};
+
+// Most hits: from outside, on what is kept. From inside, the ray may be leaving its void: judge() looks.
+inline bool is_plainly_kept(const RoundedGeometry& g, const TraceRay& ray, const RTCHit& hit) {
+  if (g.rounding == nullptr) return true;
+  if (!g.is_kept(hit.primID, hit.u, hit.v)) return false;
+  if (g.frame == nullptr && !g.any_turned) [[likely]] {
+    return dot(Vec3f(hit.Ng_x, hit.Ng_y, hit.Ng_z), ray.direction) < 0;
+  }
+  return dot(g.rounding->face_normal(hit.primID),
+             g.local_ray(ray.origin, ray.direction).direction) < 0;
+}
+
+// What becomes of one hit on a rounded geometry.
+Verdict judge(const RoundedGeometry& g, const TraceRay& ray, const Candidate& c);
+
+// Embree's context with what its filters need.
+struct FilterContext {
+  RTCIntersectContext base;  // first, so that a pointer to it is a pointer to this
+  const SceneGeometry* geometry = nullptr;
+  const SceneRounding* rounding = nullptr;
+  const TraceRay* ray = nullptr;
+  // Hit already judged, to be dropped.
+  std::uint32_t skip_geometry = kNoGeometry;
+  std::uint32_t skip_triangle = 0;
+  float transmittance = 1;  // of a shadow ray so far
+  Verdict last;             // of the last hit let through, the closest in the end
+};
+
+inline FilterContext make_filter_context(const SceneGeometry& geometry,
+                                         const SceneRounding& rounding, const TraceRay& ray) {
+  FilterContext context{};
+  rtcInitIntersectContext(&context.base);
+  context.geometry = &geometry;
+  context.rounding = &rounding;
+  context.ray = &ray;
+  return context;
+}
+
+// The ray passes the sharp hit, or meets what it moved to only beyond its end.
+inline bool is_rounded_away(FilterContext& context, const RTCHit& hit, float t) {
+  const RoundedGeometry& g = context.rounding->geometries[geometry_of(hit)];
+  if (is_plainly_kept(g, *context.ray, hit)) {
+    context.last.outcome = Resolution::Outcome::kept;
+    return false;
+  }
+  const Verdict verdict = judge(g, *context.ray, candidate_of(hit, t));
+  const bool beyond =
+      verdict.outcome == Resolution::Outcome::moved && verdict.hit.t >= double(context.ray->t_max);
+  if (verdict.outcome == Resolution::Outcome::passed || beyond) return true;
+  context.last = verdict;
+  return false;
+}
+
+// The closest hit where the first hit of the mesh is not simply kept, or the ray starts in the void.
+class RoundedTrace {
+ public:
+  RoundedTrace(const SceneGeometry& geometry, const SceneRounding& rounding, const TraceRay& ray)
+      : geometry_(geometry), rounding_(rounding), ray_(ray) {}
+
+  std::optional<SurfaceHit> settle(const RTCRayHit& first) const;
+  std::optional<SurfaceHit> trace_from_void() const;
+
+ private:
+  struct Found {
+    RTCRayHit query;
+    Verdict verdict;
+  };
+
+  [[nodiscard]] std::optional<SurfaceHit> moved(const RTCRayHit& query,
+                                                const Verdict& verdict) const;
+  [[nodiscard]] std::optional<SurfaceHit> passed(const RTCRayHit& query,
+                                                 const Verdict& verdict) const;
+  [[nodiscard]] bool leaves_kept(const RTCRayHit& entry, const RTCRayHit& exit) const;
+  [[nodiscard]] SurfaceHit finish(const Found& found) const;
+  [[nodiscard]] SurfaceHit move_hit(const RTCRayHit& query, const Verdict& verdict) const;
+  // Next hit at or behind range.t_min that the ray does not pass, other than `without`.
+  [[nodiscard]] std::optional<Found> trace_filtered(const TraceRay& range,
+                                                    const RTCHit* without) const;
+
+  const SceneGeometry& geometry_;
+  const SceneRounding& rounding_;
+  const TraceRay& ray_;
+};
+
+}  // namespace arris
