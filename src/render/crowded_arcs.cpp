@@ -104,7 +104,7 @@ class CrowdFinder {
     const Vec3d center = data.solids[a.solid].center;
     const double sin_alpha = std::max(0.05, length(a.normal + b.normal) / 2);
     const double reach = data.radius / sin_alpha;
-    const Vec3d axis = arc_axis(a, b);
+    const Vec3d axis(arc.line.axis);
     double least_a = INFINITY, least_b = INFINITY, most_both = -INFINITY;
     double low = INFINITY, high = -INFINITY;
     for (int corner = 0; corner < 8; ++corner) {
@@ -117,15 +117,14 @@ class CrowdFinder {
       least_a = std::min(least_a, dot(a.normal, x));
       least_b = std::min(least_b, dot(b.normal, x));
       most_both = std::max(most_both, dot(a.normal + b.normal, x));
-      const double along = dot(axis, x - Vec3d(arc.p0));
+      const double along = dot(axis, x - Vec3d(arc.line.p0));
       low = std::min(low, along);
       high = std::max(high, along);
     }
     // Beyond a face; behind the plane through the touching lines; beyond an end.
     const double chord = a.d + b.d - data.radius * (1 - dot(a.normal, b.normal));
-    const double arc_length = dot(axis, Vec3d(arc.p1) - Vec3d(arc.p0));
     return least_a >= a.d - slack || least_b >= b.d - slack || most_both <= chord + slack ||
-           high <= -reach || low >= arc_length + reach;
+           high <= -reach || low >= double(arc.line.length) + reach;
   }
 
   const SceneGeometry& geometry_;

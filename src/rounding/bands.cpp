@@ -30,8 +30,8 @@ class BandMaker {
       std::uint32_t arc = 0;
       for (std::uint32_t a = 0; a < network.arcs.size(); ++a) {
         if (network.arcs[a].arc.is_stub()) continue;
-        const double d =
-            length((Vec3d(network.arcs[a].arc.p0) + Vec3d(network.arcs[a].arc.p1)) * 0.5 - middle);
+        const double d = length(
+            (Vec3d(network.arcs[a].arc.line.p0) + network.arcs[a].arc.line.p1()) * 0.5 - middle);
         if (d < nearest) {
           nearest = d;
           arc = a;
@@ -96,8 +96,8 @@ class BandMaker {
   }
 
   [[nodiscard]] std::pair<double, double> extent_along(const NetworkArc& source, Vec3d axis) const {
-    const std::array<double, 4> along = {dot(axis, Vec3d(source.arc.p0)),
-                                         dot(axis, Vec3d(source.arc.p1)), dot(axis, source.v0),
+    const std::array<double, 4> along = {dot(axis, Vec3d(source.arc.line.p0)),
+                                         dot(axis, source.arc.line.p1()), dot(axis, source.v0),
                                          dot(axis, source.v1)};
     const auto [low, high] = std::ranges::minmax(along);
     // Where the face widens at an obtuse corner its band goes on past the edge's end.

@@ -90,7 +90,7 @@ Vec3d ShellBevel::direction(Item item) const {
 
 Vec3d ShellBevel::axis_end(Item item) const {
   const Arc& a = arc(item).arc;
-  return Vec3d(item % 2 == 0 ? a.p0 : a.p1);
+  return item % 2 == 0 ? Vec3d(a.line.p0) : a.line.p1();
 }
 
 Vec3d ShellBevel::local(std::uint32_t vertex) const {

@@ -123,6 +123,11 @@ Vec3d NetworkBuilder::outgoing_direction(const RingEdge& edge) const {
       cross(regions_.planes[edge.face_after].normal, regions_.planes[edge.face_before].normal));
 }
 
+ArcLine NetworkBuilder::arc_line(Vec3d p0, Vec3d p1, std::uint32_t face_a,
+                                 std::uint32_t face_b) const {
+  return make_arc_line(p0, p1, regions_.planes[face_a].normal, regions_.planes[face_b].normal);
+}
+
 Vec3d NetworkBuilder::axis_point(std::uint32_t face_a, std::uint32_t face_b, Vec3d near) const {
   return nearest_on_offset_line(regions_.planes[face_a], regions_.planes[face_b], radius_, near);
 }
@@ -207,17 +212,18 @@ void NetworkBuilder::make_spheres() {
     if (ring_[i].rounded) {
       set_end(ring_[i].half_edge, {node, position});
     } else {
-      const Arc stub{
-          Vec3f(position), Vec3f(position), ring_[i].face_after, ring_[i].face_before, node, kNone};
+      const std::uint32_t a = ring_[i].face_after;
+      const std::uint32_t b = ring_[i].face_before;
+      const Arc stub{arc_line(position, position, a, b), a, b, node, kNone};
       out_.arcs.push_back({stub, v, v, ring_[i].half_edge, kNone});
     }
   }
   for (const CornerErosion::ShortArc& s : erosion->short_arcs) {
     const Vec3d p0 = erosion->nodes[s.node0];
     const Vec3d p1 = erosion->nodes[s.node1];
-    const Arc arc{
-        Vec3f(p0),      Vec3f(p1),     ring_[s.face_a].face_after, ring_[s.face_b].face_after,
-        base + s.node0, base + s.node1};
+    const std::uint32_t a = ring_[s.face_a].face_after;
+    const std::uint32_t b = ring_[s.face_b].face_after;
+    const Arc arc{arc_line(p0, p1, a, b), a, b, base + s.node0, base + s.node1};
     out_.arcs.push_back({arc, v, v, kNone, kNone});
   }
 }
@@ -248,8 +254,8 @@ bool NetworkBuilder::make_arc(std::uint32_t first) {
         std::min(out_.radius_limit, radius_ * edge_length / (edge_length - arc_length));
   }
   ++out_.rounded_edges;
-  const Arc arc{Vec3f(e0.point), Vec3f(e1.point), face_a,    face_b,
-                e0.node,         e1.node,         first / 3, mesh_.twin[first] / 3};
+  const ArcLine line = arc_line(e0.point, e1.point, face_a, face_b);
+  const Arc arc{line, face_a, face_b, e0.node, e1.node, first / 3, mesh_.twin[first] / 3};
   out_.arcs.push_back({arc, v0, v1, first, back});
   if (arc_length > kLengthTolerance * size_) return true;
   out_.inverted = true;

@@ -76,6 +76,8 @@ class NetworkBuilder {
   std::uint32_t add_node(const NetworkNode& node);
   std::uint32_t set_end(std::uint32_t half_edge, const End& end);
   [[nodiscard]] Vec3d local(std::uint32_t vertex) const;
+  [[nodiscard]] ArcLine arc_line(Vec3d p0, Vec3d p1, std::uint32_t face_a,
+                                 std::uint32_t face_b) const;
   [[nodiscard]] Vec3d axis_point(std::uint32_t face_a, std::uint32_t face_b, Vec3d near) const;
   [[nodiscard]] Vec3d outgoing_direction(const RingEdge& edge) const;
 

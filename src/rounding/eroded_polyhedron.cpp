@@ -130,14 +130,15 @@ ShellNetwork make_eroded_polyhedron(std::span<const Plane> planes,
     const std::uint32_t n0 = forward ? ends[0] : ends[1];
     const std::uint32_t n1 = forward ? ends[1] : ends[0];
     const Arc arc{
-        Vec3f(nodes[n0]), Vec3f(nodes[n1]), first_face + pair[0], first_face + pair[1], n0, n1};
+        make_arc_line(nodes[n0], nodes[n1], planes[pair[0]].normal, planes[pair[1]].normal),
+        first_face + pair[0], first_face + pair[1], n0, n1};
     if (smooth_group[pair[0]] == smooth_group[pair[1]]) {
       // Stays sharp: marks its direction at both ends.
       Arc stub = arc;
       stub.node1 = kNone;
       network.arcs.push_back({stub, nodes[n0], nodes[n0], kNone, kNone});
       std::swap(stub.face_a, stub.face_b);
-      stub.p0 = arc.p1;
+      stub.line = {Vec3f(nodes[n1]), -arc.line.axis, 0};
       stub.node0 = n1;
       network.arcs.push_back({stub, nodes[n1], nodes[n1], kNone, kNone});
       continue;

@@ -151,6 +151,7 @@ class RoundingMaker {
       }
     }
     solid.convex = convex;
+    solid.all_rounded = all_rounded;
     solid.exact = convex && solid.closed && all_rounded;
   }
 
@@ -248,7 +249,8 @@ class RoundingMaker {
       arc.node0 += solid.first_node;
       if (!arc.is_stub()) arc.node1 += solid.first_node;
       const std::size_t triangles = mesh_.triangles.size();  // pieces of split ones have no normals
-      if (arc.triangle_a >= triangles || arc.triangle_b >= triangles) {
+      // Without smooth edges, the faces' shading normals are the faces' own.
+      if (solid.all_rounded || arc.triangle_a >= triangles || arc.triangle_b >= triangles) {
         arc.triangle_a = arc.triangle_b = kNone;
       }
       data_->arcs.push_back(arc);

@@ -26,10 +26,19 @@ struct Band {
   [[nodiscard]] float depth(float u, float v) const { return c0 + cu * u + cv * v; }
 };
 
-// An edge of E between two faces: axis of a rounding cylinder from p0 to p1, along n_a × n_b. A stub
-// (node1 == kNone) only marks the direction in which an edge that stays sharp leaves node0.
+// The axis of a rounding cylinder.
+struct ArcLine {
+  Vec3f p0;
+  Vec3f axis;  // unit, along n_a × n_b
+  float length = 0;
+
+  [[nodiscard]] Vec3d p1() const { return Vec3d(p0) + Vec3d(axis) * double(length); }
+};
+
+// An edge of E between two faces. A stub (node1 == kNone) only marks the direction in which an edge that stays
+// sharp leaves node0.
 struct Arc {
-  Vec3f p0, p1;
+  ArcLine line;
   std::uint32_t face_a, face_b;
   std::uint32_t node0, node1;
   // Triangles of the two faces at the mesh edge, whose vertex normals shade the cylinder; kNone for arcs between
@@ -65,7 +74,8 @@ struct Solid {
   std::uint32_t first_node = 0, node_count = 0;
   std::uint32_t first_face = 0, face_count = 0;
   bool closed = false, convex = false;
-  bool turned = false;   // the mesh's own winding points inward
+  bool all_rounded = false;  // no edge between faces is left sharp or smooth
+  bool turned = false;       // the mesh's own winding points inward
   bool exact = false;    // closed, convex, every edge rounded: the surface is that of opening(P)
   bool rewired = false;  // E lost features of P: the arc nearest to a point must be searched for
 };
@@ -95,9 +105,10 @@ inline bool is_kept_by_bands(const std::uint32_t* band_begin, const Band* bands,
   return true;
 }
 
-// Direction of an arc, from p0 to p1.
-inline Vec3d arc_axis(const Face& a, const Face& b) {
-  return normalize(cross(a.normal, b.normal));
+// Between faces of the given normals. The direction is theirs: that of p1 − p0 is noise where they are near.
+inline ArcLine make_arc_line(Vec3d p0, Vec3d p1, Vec3d normal_a, Vec3d normal_b) {
+  const Vec3d axis = normalize(cross(normal_a, normal_b));
+  return {Vec3f(p0), Vec3f(axis), float(dot(p1 - p0, axis))};
 }
 
 }  // namespace arris

@@ -26,13 +26,12 @@ class Network {
   [[nodiscard]] const Arc& arc(std::uint32_t index) const { return data_.arcs[index]; }
   [[nodiscard]] const Node& node(std::uint32_t index) const { return data_.nodes[index]; }
   [[nodiscard]] const Face& face(std::uint32_t index) const { return data_.faces[index]; }
-  [[nodiscard]] Vec3d axis(const Arc& a) const { return arc_axis(face(a.face_a), face(a.face_b)); }
   [[nodiscard]] std::uint32_t link(const Node& n, std::uint32_t i) const {
     return data_.links[n.first_link + i];
   }
   // Direction in which arc `index` leaves node `from`.
   [[nodiscard]] Vec3d leaving(std::uint32_t index, std::uint32_t from) const {
-    const Vec3d e = axis(arc(index));
+    const Vec3d e(arc(index).line.axis);
     return arc(index).node0 == from ? e : -e;
   }
   [[nodiscard]] std::uint32_t other_at_mitre(const Node& n, std::uint32_t index) const {
@@ -45,7 +44,7 @@ class Network {
     const std::uint32_t node_index = end == 0 ? a.node0 : a.node1;
     const Vec3d leaving_here = end == 0 ? e : -e;
     const Node& n = node(node_index);
-    const Vec3d point(end == 0 ? a.p0 : a.p1);
+    const Vec3d point = end == 0 ? Vec3d(a.line.p0) : a.line.p1();
     switch (n.kind) {
       case Node::Kind::sphere:
         break;
@@ -110,49 +109,66 @@ class Walk {
   // Returns the next place, with done_ = false; else hit_ holds the outcome.
   Place at_arc(std::uint32_t index) {
     const Arc& a = net_.arc(index);
-    const Face& face_a = net_.face(a.face_a);
-    const Face& face_b = net_.face(a.face_b);
-    const Vec3d e = arc_axis(face_a, face_b);
-    const Vec3d rel = x_ - Vec3d(a.p0);
+    const Vec3d e(a.line.axis);
+    const Vec3d rel = x_ - Vec3d(a.line.p0);
     const Vec3d offset = rel - e * dot(rel, e);
     const Vec3d across = d_ - e * dot(d_, e);
     const Root root = find_entry(offset, across, r_);
     if (root.receding && solid_.exact) return {};
-    // Where the ray leaves the solid through one of the arc's faces: r above the axis.
-    const double exit = std::min(exit_through(face_a, rel), exit_through(face_b, rel));
-    double leave = kInfinity;
-    int end = 0;
-    EndPlane plane{};
-    for (const int i : {0, 1}) {
-      const EndPlane p = net_.end_plane(index, i, e);
-      const double approach = -dot(p.normal, d_);
-      if (approach <= 0) continue;
-      const double s = std::max(0.0, dot(p.normal, x_ - p.point) / approach);
-      if (s < leave) {
-        leave = s;
-        end = i;
-        plane = p;
-      }
-    }
-    if (root.distance <= leave) {
+    const Leaving leaving =
+        solid_.exact ? leaving_between_spheres(a, rel, e) : leaving_arc(index, e);
+    if (root.distance <= leaving.distance) {
       if (root.distance == kInfinity) return {};
-      if (root.distance > exit && !solid_.exact) return {};
+      if (!solid_.exact && root.distance > exit_through_faces(a, rel)) return {};
       set_hit(root.distance, (offset + across * root.distance) / r_, Feature::edge);
       hit_->arc = index;
       if (root.inside) hit_->normal = normalize(offset);
       return {};
     }
-    if (exit <= leave) return {};
-    advance(leave);
-    const std::uint32_t node_index = end == 0 ? a.node0 : a.node1;
+    if (exit_through_faces(a, rel) <= leaving.distance) return {};
+    advance(leaving.distance);
+    const std::uint32_t node_index = leaving.end == 0 ? a.node0 : a.node1;
     const Node& n = net_.node(node_index);
     if (n.kind == Node::Kind::cap) {
-      set_hit(0, plane.normal, Feature::face);
+      set_hit(0, leaving.plane_normal, Feature::face);
       return {};
     }
     done_ = false;
     if (n.kind == Node::Kind::mitre) return {net_.other_at_mitre(n, index), false};
     return {node_index, true};
+  }
+
+  // Where the ray crosses an end plane of the arc outward, and which.
+  struct Leaving {
+    double distance = kInfinity;
+    int end = 0;
+    Vec3d plane_normal;
+  };
+
+  [[nodiscard]] Leaving leaving_arc(std::uint32_t index, Vec3d e) const {
+    Leaving leaving;
+    for (const int end : {0, 1}) {
+      const EndPlane p = net_.end_plane(index, end, e);
+      const double approach = -dot(p.normal, d_);
+      if (approach <= 0) continue;
+      const double s = std::max(0.0, dot(p.normal, x_ - p.point) / approach);
+      if (s < leaving.distance) leaving = {s, end, p.normal};
+    }
+    return leaving;
+  }
+
+  // The same where both nodes are spheres, as in every exact solid.
+  [[nodiscard]] Leaving leaving_between_spheres(const Arc& a, Vec3d rel, Vec3d e) const {
+    const double along = dot(rel, e);
+    const double speed = dot(d_, e);
+    if (speed > 0) return {std::max(0.0, (double(a.line.length) - along) / speed), 1, -e};
+    if (speed < 0) return {std::max(0.0, -along / speed), 0, e};
+    return {};
+  }
+
+  // Where the ray leaves the solid through one of the arc's faces: r above the axis.
+  [[nodiscard]] double exit_through_faces(const Arc& a, Vec3d rel) const {
+    return std::min(exit_through(net_.face(a.face_a), rel), exit_through(net_.face(a.face_b), rel));
   }
 
   [[nodiscard]] double exit_through(const Face& face, Vec3d rel) const {
@@ -231,7 +247,13 @@ std::optional<Place> find_place(const Rounding::Data& data, const Solid& solid, 
       continue;
     }
     const Arc& a = net.arc(place.index);
-    const Vec3d e = net.axis(a);
+    const Vec3d e(a.line.axis);
+    if (solid.exact) {
+      const double along = dot(x - Vec3d(a.line.p0), e);
+      if (along >= -slack && along <= double(a.line.length) + slack) return place;
+      place = {along < 0 ? a.node0 : a.node1, true};
+      continue;
+    }
     int beyond = -1;
     double farthest = slack;
     for (const int end : {0, 1}) {
@@ -259,9 +281,8 @@ std::optional<Place> search_place(const Rounding::Data& data, const Solid& solid
   for (std::uint32_t i = solid.first_arc; i < solid.first_arc + solid.arc_count; ++i) {
     const Arc& a = net.arc(i);
     if (a.is_stub()) continue;
-    const Vec3d e = net.axis(a);
-    const double along = dot(x - Vec3d(a.p0), e);
-    if (along < 0 || along > dot(Vec3d(a.p1) - Vec3d(a.p0), e)) continue;
+    const double along = dot(x - Vec3d(a.line.p0), Vec3d(a.line.axis));
+    if (along < 0 || along > double(a.line.length)) continue;
     const double d = distance_to_place(data, {i, false}, x);
     if (d < nearest) {
       nearest = d;
@@ -283,7 +304,7 @@ double distance_to_place(const Rounding::Data& data, Place place, Vec3d x) {
   const Network net(data);
   if (place.is_node) return length(x - Vec3d(net.node(place.index).position));
   const Arc& a = net.arc(place.index);
-  return length(cross(x - Vec3d(a.p0), net.axis(a)));
+  return length(cross(x - Vec3d(a.line.p0), Vec3d(a.line.axis)));
 }
 
 std::optional<WalkHit> walk(const Rounding::Data& data, const Solid& solid, Place place, Vec3d x,
