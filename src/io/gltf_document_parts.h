@@ -12,7 +12,7 @@ std::size_t count_of(const JsonValue& root, const char* array);
 // extras.arris_radius: a number, "12%", "auto" or "none".
 std::optional<RoundingSettings> parse_rounding_extra(const JsonValue& owner);
 
-GltfMaterial parse_gltf_material(const JsonValue& material, std::size_t texture_count,
+GltfMaterial parse_gltf_material(const JsonValue& value, std::size_t texture_count,
                                  std::vector<std::string>& notes);
 
 // Fills cameras, lights, nodes and roots.

@@ -54,11 +54,12 @@ class TextureCache {
     std::uint32_t image = 0;
     Texture::Wrap wrap_u{}, wrap_v{};
     bool srgb = false, opaque = false;
-    auto operator<=>(const Use&) const = default;
+    [[nodiscard]] auto key() const { return std::tuple(image, wrap_u, wrap_v, srgb, opaque); }
   };
 
   TextureId find_or_make(const Use& use) {
-    const auto [entry, is_new] = made_.try_emplace(use, TextureId{std::uint32_t(textures_.size())});
+    const auto [entry, is_new] =
+        made_.try_emplace(use.key(), TextureId{std::uint32_t(textures_.size())});
     if (is_new) textures_.push_back(make(use));
     return entry->second;
   }
@@ -98,7 +99,7 @@ class TextureCache {
 
   const GltfSource& source_;
   const std::filesystem::path& base_directory_;
-  std::map<Use, TextureId> made_;
+  std::map<std::tuple<std::uint32_t, Texture::Wrap, Texture::Wrap, bool, bool>, TextureId> made_;
   std::map<std::uint32_t, Rgba8Image> images_;
   std::vector<Texture> textures_;
 };

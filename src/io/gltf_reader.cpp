@@ -38,8 +38,9 @@ void visit_nodes(const GltfDocument& document, Visit&& visit) {
   std::vector<Entry> stack;
   const auto push = [&](const std::vector<std::uint32_t>& nodes,
                         const Affine3d& world_from_parent) {
-    for (auto it = nodes.rbegin(); it != nodes.rend(); ++it) {
-      stack.push_back({*it, world_from_parent * document.nodes[*it].parent_from_node});
+    for (std::size_t i = nodes.size(); i-- > 0;) {
+      const std::uint32_t node = nodes[i];
+      stack.push_back({node, world_from_parent * document.nodes[node].parent_from_node});
     }
   };
   push(document.roots, {});

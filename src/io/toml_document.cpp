@@ -206,8 +206,8 @@ std::optional<std::size_t> TomlTableReader::word_index(std::string_view key,
   if (found != names.end()) return std::size_t(found - names.begin());
   std::string list;
   for (const std::string& name : names) list += (list.empty() ? "" : ", ") + name;
-  report(key, fmt::format("{} is not known{}; use one of {}", in_quotes(*text),
-                          did_you_mean(*text, names), list));
+  report(key,
+         fmt::format("{} is not one of {}{}", in_quotes(*text), list, did_you_mean(*text, names)));
   return std::nullopt;
 }
 

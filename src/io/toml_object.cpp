@@ -147,7 +147,7 @@ TomlObjects::Placement TomlObjects::parse_placement(TomlTableReader& reader) {
   return placement;
 }
 
-bool TomlObjects::has_room(std::size_t objects, TomlTableReader& reader, const char* key) {
+bool TomlObjects::has_room(std::size_t objects, TomlTableReader& reader, const char* key) const {
   if (context_.scene.objects.size() + objects <= kMaxObjects) return true;
   reader.report(key, fmt::format("the scene has more than {} objects", kMaxObjects));
   return false;
@@ -251,7 +251,8 @@ TomlObjects::Model TomlObjects::append(Scene model, const std::filesystem::path&
 MeshId TomlObjects::without_materials(MeshId id) {
   Scene& scene = context_.scene;
   if (scene.meshes[id.index].triangle_materials.empty()) return id;
-  const auto [entry, is_new] = plain_.try_emplace(id, MeshId{std::uint32_t(scene.meshes.size())});
+  const auto [entry, is_new] =
+      plain_.try_emplace(id.index, MeshId{std::uint32_t(scene.meshes.size())});
   if (is_new) {
     Mesh copy = scene.meshes[id.index];
     copy.triangle_materials.clear();

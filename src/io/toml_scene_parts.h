@@ -86,14 +86,14 @@ class TomlObjects {
   void add_file(TomlTableReader& reader, const Placement& placement);
   const Model* find_or_load(const std::string& file, TomlTableReader& reader);
   Model append(Scene model, const std::filesystem::path& path);
-  MeshId without_materials(MeshId mesh);
-  bool has_room(std::size_t objects, TomlTableReader& reader, const char* key);
+  MeshId without_materials(MeshId id);
+  bool has_room(std::size_t objects, TomlTableReader& reader, const char* key) const;
 
   const TomlSceneContext& context_;
   const TomlMaterials& materials_;
   std::map<std::string, std::optional<Model>> models_;  // empty: could not be loaded
   std::map<std::string, MeshId> shapes_;                // by their parameters
-  std::map<MeshId, MeshId> plain_;                      // copies without triangle materials
+  std::map<std::uint32_t, MeshId> plain_;  // by mesh: copies without triangle materials
   std::size_t shape_triangles_ = 0;
 };
 
