@@ -102,7 +102,8 @@ class CrowdFinder {
     const Face& a = data.faces[arc.face_a];
     const Face& b = data.faces[arc.face_b];
     const Vec3d center = data.solids[a.solid].center;
-    const double sin_alpha = std::max(0.05, length(a.normal + b.normal) / 2);
+    const Vec3d sum(a.normal + b.normal);
+    const double sin_alpha = std::max(0.05, length(sum) / 2);
     const double reach = data.radius / sin_alpha;
     const Vec3d axis(arc.line.axis);
     double least_a = INFINITY, least_b = INFINITY, most_both = -INFINITY;
@@ -114,15 +115,15 @@ class CrowdFinder {
       const Vec3d local =
           g.frame == nullptr ? world : transform_point(g.frame->rounding_from_world, world);
       const Vec3d x = local - center;
-      least_a = std::min(least_a, dot(a.normal, x));
-      least_b = std::min(least_b, dot(b.normal, x));
-      most_both = std::max(most_both, dot(a.normal + b.normal, x));
+      least_a = std::min(least_a, dot(Vec3d(a.normal), x));
+      least_b = std::min(least_b, dot(Vec3d(b.normal), x));
+      most_both = std::max(most_both, dot(sum, x));
       const double along = dot(axis, x - Vec3d(arc.line.p0));
       low = std::min(low, along);
       high = std::max(high, along);
     }
     // Beyond a face; behind the plane through the touching lines; beyond an end.
-    const double chord = a.d + b.d - data.radius * (1 - dot(a.normal, b.normal));
+    const double chord = a.d + b.d - data.radius * (1 - dot(Vec3d(a.normal), Vec3d(b.normal)));
     return least_a >= a.d - slack || least_b >= b.d - slack || most_both <= chord + slack ||
            high <= -reach || low >= double(arc.line.length) + reach;
   }

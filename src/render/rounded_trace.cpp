@@ -78,7 +78,7 @@ Verdict judge(const RoundedGeometry& g, const TraceRay& ray, const Candidate& c)
   const Face& face = data.faces[face_index];
   const Solid& solid = data.solids[face.solid];
   const Ray local = g.local_ray(ray.origin, ray.direction);
-  verdict.entering = dot(face.normal, local.direction) < 0;
+  verdict.entering = dot(Vec3d(face.normal), local.direction) < 0;
   RayStart start = RayStart::unknown;
   if (!verdict.entering) {
     start = start_of(g, ray, c, face.solid);

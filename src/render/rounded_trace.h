@@ -52,6 +52,9 @@ struct FilterContext {
   const SceneGeometry* geometry = nullptr;
   const SceneRounding* rounding = nullptr;
   const TraceRay* ray = nullptr;
+  // A ray that leaves a rounded edge of this closed solid outward: what it meets of it from inside is its void's end.
+  std::uint32_t own_geometry = kNoGeometry;
+  std::uint32_t own_solid = kNone;
   // Hit already judged, to be dropped.
   std::uint32_t skip_geometry = kNoGeometry;
   std::uint32_t skip_triangle = 0;
@@ -66,12 +69,26 @@ inline FilterContext make_filter_context(const SceneGeometry& geometry,
   context.geometry = &geometry;
   context.rounding = &rounding;
   context.ray = &ray;
+  if (ray.from.feature != Feature::face && ray.from.side == Side::outside && rounding.any) {
+    const RoundedGeometry& g = rounding.geometries[ray.from.geometry];
+    const std::uint32_t solid = g.rounding->solid_of(ray.from.triangle);
+    if (g.frame == nullptr && !g.any_turned && g.rounding->data().solids[solid].closed) {
+      context.own_geometry = ray.from.geometry;
+      context.own_solid = solid;
+    }
+  }
   return context;
 }
 
 // The ray passes the sharp hit, or meets what it moved to only beyond its end.
 inline bool is_rounded_away(FilterContext& context, const RTCHit& hit, float t) {
-  const RoundedGeometry& g = context.rounding->geometries[geometry_of(hit)];
+  const std::uint32_t geometry = geometry_of(hit);
+  const RoundedGeometry& g = context.rounding->geometries[geometry];
+  if (geometry == context.own_geometry &&
+      dot(Vec3f(hit.Ng_x, hit.Ng_y, hit.Ng_z), context.ray->direction) > 0 &&
+      g.rounding->solid_of(hit.primID) == context.own_solid) {
+    return true;
+  }
   if (is_plainly_kept(g, *context.ray, hit)) {
     context.last.outcome = Resolution::Outcome::kept;
     return false;

@@ -118,7 +118,8 @@ class RoundingMaker {
                        regions_.region.begin() + std::ptrdiff_t(mesh_.triangles.size()));
     data_->faces.reserve(regions_.planes.size());
     for (std::size_t r = 0; r < regions_.planes.size(); ++r) {
-      data_->faces.push_back({regions_.planes[r].normal, regions_.planes[r].d, regions_.shell[r]});
+      data_->faces.push_back(
+          {Vec3f(regions_.planes[r].normal), regions_.shell[r], regions_.planes[r].d});
     }
     data_->solids.resize(welded_.shells.size());
     for (std::size_t s = 0; s < welded_.shells.size(); ++s) {

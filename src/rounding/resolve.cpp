@@ -31,10 +31,10 @@ FaceHit locate(const Rounding::Data& data, const Ray& ray, const MeshHit& hit) {
   const Vec3d origin = ray.origin - data.solids[face.solid].center;
   at.scale = length(ray.direction);
   at.direction = ray.direction / at.scale;
-  const double cosine = dot(face.normal, at.direction);
+  const double cosine = dot(Vec3d(face.normal), at.direction);
   at.t = hit.t;
   if (std::abs(cosine) > kGrazing) {
-    at.t = (face.d - dot(face.normal, origin)) / (cosine * at.scale);
+    at.t = (face.d - dot(Vec3d(face.normal), origin)) / (cosine * at.scale);
   }
   at.x = origin + ray.direction * at.t;
   return at;
@@ -42,7 +42,7 @@ FaceHit locate(const Rounding::Data& data, const Ray& ray, const MeshHit& hit) {
 
 bool is_in_solid(const Rounding::Data& data, const Solid& solid, Vec3d x) {
   for (std::uint32_t f = solid.first_face; f < solid.first_face + solid.face_count; ++f) {
-    if (dot(data.faces[f].normal, x) > data.faces[f].d) return false;
+    if (dot(Vec3d(data.faces[f].normal), x) > data.faces[f].d) return false;
   }
   return true;
 }
@@ -54,12 +54,12 @@ bool is_in_void(const Rounding::Data& data, const Solid& solid, Vec3d x) {
   const auto faces = std::span(data.faces).subspan(solid.first_face, solid.face_count);
   bool in_erosion = true;
   for (const Face& near : faces) {
-    const double above = dot(near.normal, x) - (near.d - data.radius);
+    const double above = dot(Vec3d(near.normal), x) - (near.d - data.radius);
     if (above <= 0) continue;
     in_erosion = false;
-    const Vec3d foot = x - near.normal * above;
+    const Vec3d foot = x - Vec3d(near.normal) * above;
     const auto is_beyond = [&](const Face& f) {
-      return dot(f.normal, foot) > f.d - data.radius + kOnSurface * solid.size;
+      return dot(Vec3d(f.normal), foot) > f.d - data.radius + kOnSurface * solid.size;
     };
     if (std::ranges::none_of(faces, is_beyond)) return false;
   }
@@ -72,7 +72,7 @@ bool is_in_void(const Rounding::Data& data, const Solid& solid, Vec3d x) {
 Resolution walk_from_void(const Rounding::Data& data, const Solid& solid, Vec3d origin,
                           const FaceHit& exit) {
   Resolution out;
-  out.hit = {exit.t, data.faces[exit.face].normal, Feature::face, kNone};
+  out.hit = {exit.t, Vec3d(data.faces[exit.face].normal), Feature::face, kNone};
   out.outcome = Resolution::Outcome::passed;
   const std::optional<Place> place = search_place(data, solid, origin);
   if (!place) return out;
@@ -90,10 +90,13 @@ bool is_under_arc(const Rounding::Data& data, const Solid& solid, std::uint32_t 
   const double slack = kOnSurface * solid.size;
   if (distance_to_place(data, place, x) <= data.radius + slack) return false;
   const Arc& arc = data.arcs[place.is_node ? arc_index : place.index];
+  // A touching line lies r (1 − n_a·n_b) under the other face.
+  const double deepest = data.radius * (1 - dot(Vec3d(data.faces[arc.face_a].normal),
+                                                Vec3d(data.faces[arc.face_b].normal)));
   for (const std::uint32_t f : {arc.face_a, arc.face_b}) {
-    const double above = dot(data.faces[f].normal, x) - data.faces[f].d;
+    const double above = dot(Vec3d(data.faces[f].normal), x) - data.faces[f].d;
     if (above > 10 * slack) return false;
-    if (!place.is_node && above < -data.radius - slack) return false;
+    if (!place.is_node && above < -deepest - slack) return false;
   }
   return true;
 }
@@ -107,32 +110,38 @@ std::optional<Place> place_of(const Rounding::Data& data, const Solid& solid, st
   return place;
 }
 
-std::optional<Place> detect_by_bands(const Rounding::Data& data, const Solid& solid,
-                                     const MeshHit& hit, Vec3d x) {
+// The arc of the band that takes away most of the face at the hit; kNone: kept.
+std::uint32_t deepest_band(const Rounding::Data& data, const MeshHit& hit) {
   const auto u = float(hit.u);
   const auto v = float(hit.v);
   const Band* const last = data.bands.data() + data.band_begin[hit.triangle + 1];
-  const Band* deepest = nullptr;
+  std::uint32_t arc = kNone;
   float depth = 0;
   for (const Band* b = data.bands.data() + data.band_begin[hit.triangle]; b != last; ++b) {
     const float d = b->depth(u, v);
-    if (d <= 0) continue;
-    if (!solid.exact) {
-      if (const std::optional<Place> place = place_of(data, solid, b->arc, x)) return place;
-    } else if (d > depth) {
-      depth = d;
-      deepest = b;
-    }
+    if (d <= depth) continue;
+    depth = d;
+    arc = b->arc;
   }
-  if (deepest == nullptr) return std::nullopt;
-  return place_of(data, solid, deepest->arc, x);
+  return arc;
+}
+
+// Solids that aren't exact: the first band that the point really lies in.
+std::optional<Place> detect_by_bands(const Rounding::Data& data, const Solid& solid,
+                                     const MeshHit& hit, Vec3d x) {
+  const Band* const last = data.bands.data() + data.band_begin[hit.triangle + 1];
+  for (const Band* b = data.bands.data() + data.band_begin[hit.triangle]; b != last; ++b) {
+    if (b->depth(float(hit.u), float(hit.v)) <= 0) continue;
+    if (const std::optional<Place> place = place_of(data, solid, b->arc, x)) return place;
+  }
+  return std::nullopt;
 }
 
 // Paper §3.2: a kd-tree instead of the triangle's bands.
 std::optional<Place> detect_by_tree(const Rounding::Data& data, const Solid& solid,
                                     std::uint32_t face_index, Vec3d x) {
   const Face& face = data.faces[face_index];
-  const Vec3d ball = x - face.normal * data.radius;
+  const Vec3d ball = x - Vec3d(face.normal) * data.radius;
   const DetectionEntry* deepest = nullptr;
   double depth = kOnSurface * solid.size;
   for (const DetectionEntry& entry : data.tree->find(face.solid, Vec3f(x))) {
@@ -140,7 +149,7 @@ std::optional<Place> detect_by_tree(const Rounding::Data& data, const Solid& sol
     const Arc& arc = data.arcs[entry.arc];
     const Face& other = data.faces[arc.face_a == face_index ? arc.face_b : arc.face_a];
     const double d =
-        entry.whole_face ? solid.size : dot(other.normal, ball) - (other.d - data.radius);
+        entry.whole_face ? solid.size : dot(Vec3d(other.normal), ball) - (other.d - data.radius);
     if (d <= kOnSurface * solid.size) continue;
     if (!solid.exact) {
       if (const std::optional<Place> place = place_of(data, solid, entry.arc, x)) return place;
@@ -151,6 +160,17 @@ std::optional<Place> detect_by_tree(const Rounding::Data& data, const Solid& sol
   }
   if (deepest == nullptr) return std::nullopt;
   return place_of(data, solid, deepest->arc, x);
+}
+
+// Where the walk ended.
+void finish(Resolution& out, const std::optional<WalkHit>& met, const FaceHit& at, bool entering) {
+  if (!met) {
+    out.outcome = Resolution::Outcome::passed;
+    return;
+  }
+  out.outcome = Resolution::Outcome::moved;
+  const double along = met->distance / at.scale;
+  out.hit = {entering ? at.t + along : at.t - along, met->normal, met->feature, met->arc};
 }
 
 }  // namespace
@@ -191,26 +211,34 @@ Resolution Rounding::resolve(const Ray& ray, const MeshHit& hit, RayStart start)
   const Solid& solid = data_->solids[solid_index];
   const FaceHit at = locate(*data_, ray, hit);
   const Face& face = data_->faces[at.face];
-  out.hit = {at.t, face.normal, Feature::face, kNone};
-  const bool entering = dot(face.normal, at.direction) < 0;
+  out.hit = {at.t, Vec3d(face.normal), Feature::face, kNone};
+  const bool entering = dot(Vec3d(face.normal), at.direction) < 0;
   if (!entering && solid.exact && start != RayStart::inside) {
     const Vec3d origin = ray.origin - solid.center;
     if (start == RayStart::outside || is_in_void(*data_, solid, origin)) {
       return walk_from_void(*data_, solid, origin, at);
     }
   }
-  const std::optional<Place> place = data_->tree ? detect_by_tree(*data_, solid, face_index, at.x)
-                                                 : detect_by_bands(*data_, solid, hit, at.x);
-  if (!place) return out;
   const Vec3d direction = entering ? at.direction : -at.direction;
-  const std::optional<WalkHit> met = walk(*data_, solid, *place, at.x, direction);
-  if (!met) {
-    out.outcome = Resolution::Outcome::passed;
-    return out;
+  std::optional<Place> place;
+  if (data_->tree) {
+    place = detect_by_tree(*data_, solid, face_index, at.x);
+  } else if (!solid.exact) {
+    place = detect_by_bands(*data_, solid, hit, at.x);
+  } else {
+    const std::uint32_t arc = deepest_band(*data_, hit);
+    if (arc == kNone) return out;
+    if (!solid.rewired) {
+      const ShortWalk quick = walk_short(*data_, arc, at.x, direction);
+      if (quick.certain) {
+        finish(out, quick.hit, at, entering);
+        return out;
+      }
+    }
+    place = place_of(*data_, solid, arc, at.x);
   }
-  out.outcome = Resolution::Outcome::moved;
-  const double along = met->distance / at.scale;
-  out.hit = {entering ? at.t + along : at.t - along, met->normal, met->feature, met->arc};
+  if (!place) return out;
+  finish(out, walk(*data_, solid, *place, at.x, direction), at, entering);
   return out;
 }
 
@@ -223,8 +251,8 @@ bool Rounding::contains(std::uint32_t solid_index, Vec3d point) const {
 std::optional<EdgeBlend> Rounding::blend_of(const RoundedHit& hit, Vec3d position) const {
   if (hit.arc == kNone || data_->arcs[hit.arc].triangle_a == kNone) return std::nullopt;
   const Arc& arc = data_->arcs[hit.arc];
-  const Vec3d na = data_->faces[arc.face_a].normal;
-  const Vec3d nb = data_->faces[arc.face_b].normal;
+  const Vec3d na(data_->faces[arc.face_a].normal);
+  const Vec3d nb(data_->faces[arc.face_b].normal);
   // hit.normal = α n_a + β n_b on the cylinder.
   const double c = dot(na, nb);
   const double s2 = length_squared(cross(na, nb));
@@ -247,7 +275,7 @@ bool Rounding::is_exact(std::uint32_t solid) const {
 
 Vec3d Rounding::face_normal(std::uint32_t triangle) const {
   const std::uint32_t face = data_->face[triangle];
-  return face == kNone ? Vec3d(0, 0, 1) : data_->faces[face].normal;
+  return face == kNone ? Vec3d(0, 0, 1) : Vec3d(data_->faces[face].normal);
 }
 
 const RoundingReport& Rounding::report() const {

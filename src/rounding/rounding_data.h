@@ -62,9 +62,9 @@ struct Node {
 };
 
 struct Face {
-  Vec3d normal;
-  double d;
+  Vec3f normal;  // unit
   std::uint32_t solid;
+  double d;  // of normal·x, relative to the solid's centre
 };
 
 struct Solid {

@@ -52,7 +52,7 @@ class Network {
         return {Vec3d(n.position),
                 normalize(leaving_here - leaving(other_at_mitre(n, index), node_index))};
       case Node::Kind::cap:
-        if (link(n, 1) != kNone) return {point, face(link(n, 1)).normal};
+        if (link(n, 1) != kNone) return {point, Vec3d(face(link(n, 1)).normal)};
         break;
     }
     return {point, leaving_here};
@@ -172,9 +172,9 @@ class Walk {
   }
 
   [[nodiscard]] double exit_through(const Face& face, Vec3d rel) const {
-    const double approach = dot(face.normal, d_);
+    const double approach = dot(Vec3d(face.normal), d_);
     if (approach <= 0) return kInfinity;
-    return (r_ - dot(face.normal, rel)) / approach;
+    return (r_ - dot(Vec3d(face.normal), rel)) / approach;
   }
 
   Place at_node(std::uint32_t index) {
@@ -305,6 +305,24 @@ double distance_to_place(const Rounding::Data& data, Place place, Vec3d x) {
   if (place.is_node) return length(x - Vec3d(net.node(place.index).position));
   const Arc& a = net.arc(place.index);
   return length(cross(x - Vec3d(a.line.p0), Vec3d(a.line.axis)));
+}
+
+ShortWalk walk_short(const Rounding::Data& data, std::uint32_t arc, Vec3d x, Vec3d direction) {
+  const ArcLine& line = data.arcs[arc].line;
+  const Vec3d e(line.axis);
+  const Vec3d rel = x - Vec3d(line.p0);
+  const double along = dot(rel, e);
+  if (along < 0 || along > double(line.length)) return {};
+  const double speed = dot(direction, e);
+  const Vec3d offset = rel - e * along;
+  const Vec3d across = direction - e * speed;
+  const Root root = find_entry(offset, across, data.radius);
+  if (root.receding) return {true, std::nullopt};
+  if (root.distance == kInfinity || root.inside) return {};
+  const double end = along + speed * root.distance;
+  if (end < 0 || end > double(line.length)) return {};
+  const Vec3d normal = (offset + across * root.distance) / data.radius;
+  return {true, WalkHit{root.distance, normal, Feature::edge, arc}};
 }
 
 std::optional<WalkHit> walk(const Rounding::Data& data, const Solid& solid, Place place, Vec3d x,

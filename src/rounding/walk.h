@@ -37,6 +37,14 @@ struct WalkHit {
   std::uint32_t arc = kNone;  // of an edge
 };
 
+// The commonest walk of all: x lies between the ends of an exact solid's arc, and the ray meets its cylinder before it
+// leaves that slab, or moves away. `certain` is false where walk() must decide.
+struct ShortWalk {
+  bool certain = false;
+  std::optional<WalkHit> hit;
+};
+ShortWalk walk_short(const Rounding::Data& data, std::uint32_t arc, Vec3d x, Vec3d direction);
+
 // From x, a point of the void at `place`. Nothing if the ray leaves the solid.
 std::optional<WalkHit> walk(const Rounding::Data& data, const Solid& solid, Place place, Vec3d x,
                             Vec3d direction);
