@@ -10,7 +10,7 @@ namespace arris::bench {
 
 struct Method {
   std::string name;   // as on the command line
-  std::string title;  // as in the paper
+  std::string title;  // as in the paper, whose "our method" is "exact"
   RoundMethod method = RoundMethod::none;
   int subdivisions = 0;
 };

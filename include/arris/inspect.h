@@ -17,7 +17,7 @@ struct EdgeCounts {
   std::uint64_t smooth = 0;       // turns by less than min_angle, but is not flat
   std::uint64_t flat = 0;         // between coplanar triangles
   std::uint64_t boundary = 0;     // one triangle
-  std::uint64_t nonmanifold = 0;  // more than two triangles, or two of opposite orientation
+  std::uint64_t nonmanifold = 0;  // not as many triangles run along it as against it
 };
 
 struct ObjectReport {
@@ -26,7 +26,7 @@ struct ObjectReport {
   std::uint64_t shells = 0;                   // connected components
   EdgeCounts edges;
   bool closed = false;             // every shell
-  bool convex = false;             // every shell
+  bool convex = false;             // every shell is closed and convex
   std::optional<double> inradius;  // world units, the smallest of the closed convex shells
   Vec3d bounds_min, bounds_max;    // world
   std::uint64_t degenerate_triangles = 0;

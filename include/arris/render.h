@@ -28,8 +28,8 @@ struct PrepareOptions {
 class PreparedScene;
 // Throws Error with every problem of validate_scene() and of the rounding.
 std::shared_ptr<const PreparedScene> prepare_scene(Scene scene, const PrepareOptions& options = {});
-// The same scene with another default rounding: only the rounding is built, meshes and their acceleration
-// structure are shared. Objects with settings of their own keep them.
+// The same scene with another default rounding: only the rounding is built, meshes and their acceleration structure
+// are shared (but with bevel meshes, before or after). Objects with settings of their own keep them.
 std::shared_ptr<const PreparedScene> prepare_again(const PreparedScene& prepared,
                                                    const RoundingSettings& scene_default,
                                                    const PrepareOptions& options = {});
@@ -39,7 +39,7 @@ struct RoundingSummary {
   std::string object;
   double radius = 0;  // world units; 0: not rounded
   std::uint64_t edges = 0, corners = 0;
-  std::vector<std::string> notes;  // "not convex: rounded along its 12 convex edges only", …
+  std::vector<std::string> notes;  // "2 concave edges stay sharp", …: docs/rounding.md lists them
 };
 
 struct PrepareStats {

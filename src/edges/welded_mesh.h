@@ -3,8 +3,8 @@
 //            connected triangles become shells. Where more than two triangles meet at an edge (pieces
 //            that touch), they are paired around the edge so that each pair encloses material. A triangle
 //            with other triangles' vertices on an open edge (a T-junction) is split there.
-// In / Out   triangle indices stay the caller's, pieces of split triangles follow them; half-edge h = 3 * triangle + k runs from corner k to
-//            corner k+1 of `triangles` (which are turned around where a shell is inside out)
+// In / Out   triangle indices stay the caller's, pieces of split triangles follow them; half-edge h = 3 * triangle + k
+//            runs from corner k to corner k+1 of `triangles` (which turn_inverted_shells() may turn around)
 // Guarantee  twin[twin[h]] == h; tests/edges/welded_mesh_test.cpp
 // Limits     a T-junction is healed where its vertex lies on the edge within kJunctionTolerance of the mesh's
 //            size; at most kMaxJunctionTests vertices are looked at in all, the rest stay boundaries

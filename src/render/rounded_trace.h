@@ -1,6 +1,6 @@
 // rounded_trace.h — rays among rounded objects
-// What       A hit on a rounded object stands, moves onto an edge or corner, or the ray passes between the sharp and the
-//            rounded surface (arris/rounding.h). Closest hits are traced without a filter, as most hits are kept;
+// What       A hit on a rounded object stands, moves onto an edge or corner, or the ray passes between the sharp and
+//            the rounded surface (arris/rounding.h). Closest hits are traced without a filter, as most hits are kept;
 //            a ray that passes is traced again with a filter that drops what it passes. It then sees what
 //            touches the object from outside at the very distance where it leaves (the main picture of the
 //            paper, its Fig. 9), with no resume distance and no tolerance. A ray that leaves a rounded edge starts in
@@ -8,7 +8,8 @@
 // Guarantee  never a hole: a solid that is not rounded exactly is passed only where the ray enters and leaves
 //            within what the rounding takes away; elsewhere its face stands
 // Included   by trace.cpp only
-// Source     Courtin et al. §4, Fig. 7
+// Source     Courtin et al. §4, Fig. 7. There a secondary ray starts on the mesh, at I″; here it starts at I′, with the
+//            filter, as I″ lies on the face of any solid that touches
 #pragma once
 
 #include "render/embree_hit.h"

@@ -2,8 +2,10 @@
 // What       A hit I on face k is kept iff the ball that touches the face there fits in the solid: its centre
 //            c = I − r·n_k satisfies n_j·c ≤ d_j − r for every face j that meets k in the erosion. Per triangle
 //            and arc (k, j) that is one linear function of the barycentrics. It is the trace on the face of the
-//            paper's detection cylinder (§3.1), which by Thales cuts the face in just this band.
-// Guarantee  no void point of a closed convex solid lies outside the bands
+//            paper's detection cylinder (§3.1), which by Thales cuts the face in just this band; but a band does not
+//            end at the edge's vertices (why: detection_tree.h).
+// Guarantee  no void point of an exact solid lies outside the bands, but for a depth of 1e-7 of its size
+//            (tests/rounding/oracle_test.cpp)
 // Limits     on other solids a band may reach past the end of its edge: resolve() checks
 #pragma once
 

@@ -6,12 +6,12 @@
 //            faces are flat, or keep the source's normals if it has any. Materials and uv of a bevel are those of
 //            the nearer of its faces; uv between a face's corners are interpolated linearly.
 // Guarantee  of a closed solid the result is closed (two triangles at every edge, equal positions bit for bit) and
-//            faces outward; a closed convex solid's vertices lie on the rounded surface, and its volume is between
-//            the exact rounded and the sharp one (tests/rounding/bevel_mesh_test.cpp)
+//            faces outward; a closed convex solid's vertices lie on the rounded surface, so that its volume tends to
+//            the exact rounded one from below as N grows (tests/rounding/bevel_mesh_test.cpp)
 // Limits     concave edges stay sharp. Where a rounding ends at an edge that stays sharp there is a flat wall. A
 //            shell whose bevel would fold over, whose radius has eaten features while some edges stay sharp, or whose
 //            rounded faces have several materials keeps its triangles: counted in `kept_solids`, said in `notes`.
-// Cost       linear in the triangles made, some 10 million a second, beside what make_rounding() takes
+// Cost       linear in the triangles made, beside what make_rounding() takes
 // Source     the comparison of Courtin et al., Table 1 and Fig. 10
 #pragma once
 

@@ -2,8 +2,8 @@
 // What       erode_corner(): the polyhedral cone of a convex vertex, each plane moved in, has in general m−2
 //            vertices joined by m−3 short edges (m faces). make_mitre_plane(): where two cylinders of one radius
 //            meet in a plane.
-// Source     rounding.md §2 of the design: with more than three faces at a vertex the axes meet in one point only if
-//            all planes touch a common ball, which the paper (§3, Fig. 5) assumes
+// Source     Courtin et al. §3, Fig. 4 and 5, put one sphere where all axes of a corner cross. With more than three
+//            faces they cross in one point only if all planes touch a common ball; else there are several spheres
 #pragma once
 
 #include <cstdint>

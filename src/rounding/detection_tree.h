@@ -1,6 +1,7 @@
 // detection_tree.h — the paper's kd-tree over the regions where edges round the faces (§3.1, §3.2)
 // What       finds the arcs whose band on a face holds a point of that face
-// Source     Courtin et al. §3.2: binary splits in the middle of the longest axis, one tree per object (here: per solid).
+// Source     Courtin et al. §3.2: binary splits along the longest axis (here: in its middle), one tree per object or
+//            group of simple objects (here: per solid).
 //            The paper's entries are detection cylinders from vertex to vertex. By Thales such a cylinder
 //            cuts its faces exactly along the bands (bands.h), but beside obtuse corners and at corners of more than
 //            three faces it leaves void points out. So the entries here are boxes of the bands themselves, and

@@ -1,6 +1,6 @@
 // resolve.cpp — what becomes of a hit on the mesh
-// Source     Courtin et al. §4; the design's ray logic: a hit in the void is walked on to the rounded surface, or
-//            passes. A hit from inside is the mirror image: walked back from where the ray leaves P.
+// Source     Courtin et al. §4: a hit in the void is walked on to the rounded surface, or passes. A hit from inside,
+//            which the paper only names (§3), is the mirror image: walked back from where the ray leaves P.
 #include <algorithm>
 #include <cmath>
 #include <span>

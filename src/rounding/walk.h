@@ -1,12 +1,14 @@
 // walk.h — from the void to the rounded surface
-// What       Between the sharp and the rounded edge lies the void P \ opening(P). The distance from a point of the void to
-//            E is the distance to the nearest arc or node, whose Voronoi regions partition the void: an arc's is the
-//            slab between its end planes, a node's what its arcs' slabs leave. A ray is walked from region to region (paper §4,
-//            the adjacency graph) until it meets the cylinder or sphere of the region it is in, leaves through a
-//            face, or moves away: the distance to the convex E along a ray is convex, so it won't come back.
+// What       Between the sharp and the rounded edge lies the void P \ opening(P). The distance from a point of the void
+//            to E is the distance to the nearest arc or node, whose Voronoi regions partition the void: an arc's is
+//            the slab between its end planes, a node's what its arcs' slabs leave. A ray is walked from region to
+//            region (paper §3.1 and §4, the adjacency graph) until it meets the cylinder or sphere of the region it is
+//            in, leaves through a face, or moves away: the distance to the convex E along a ray is convex, so it
+//            won't come back. On solids that aren't exact a ray is walked on, through the regions of a local E.
 // In / Out   positions relative to the solid's centre; directions unit
 // Guarantee  every walk ends: steps are bounded by kMaxSteps, far above what a corner needs
-// Source     Courtin et al. §4, Fig. 7; regions as in V-Clip (Mirtich 1998), for a point
+// Source     Courtin et al. §4, Fig. 7: there all cylinders that hold the hit are tried first, then spheres; here
+//            regions are met in the ray's order, as in V-Clip (Mirtich 1998), for a point
 #pragma once
 
 #include <optional>
