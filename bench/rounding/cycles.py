@@ -47,7 +47,9 @@ def host(arguments):
         measured = {variant: [] for variant in variants}
         for number in range(a.rounds):
             for variant in variants if number % 2 == 0 else reversed(variants):
-                picture = os.path.join(a.pictures, f"{scene}-cycles-{variant}.png") if a.pictures and number == 0 else "-"
+                picture = "-"
+                if a.pictures and number == 0:
+                    picture = os.path.join(a.pictures, f"{scene}-cycles-{variant}.png")
                 measured[variant].append(run_blender(blender, a, scene, variant, picture))
         results.append(summarise(scene, measured, variants))
     if a.json:
@@ -239,7 +241,8 @@ def add_light(bpy, scene, l):
     made = bpy.data.objects.new("area", light)
     # Blender's lamp shines along its -Z.
     x, z = u.normalized(), -u.cross(v).normalized()
-    made.matrix_world = Matrix.Translation(Vector(l["corner"]) + (u + v) / 2) @ Matrix((x, z.cross(x), z)).transposed().to_4x4()
+    turn = Matrix((x, z.cross(x), z)).transposed().to_4x4()
+    made.matrix_world = Matrix.Translation(Vector(l["corner"]) + (u + v) / 2) @ turn
     made.visible_camera = l["visible_to_camera"]
     scene.collection.objects.link(made)
 

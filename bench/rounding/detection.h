@@ -1,6 +1,6 @@
 // detection.h — the paper's kd-tree against the index by face, on the hits of real paths
-// What       meets camera rays and one diffuse bounce with the scene's sharp mesh, keeps the hits on rounded objects, and
-//            times the kernel alone on them in every mode
+// What       meets camera rays and one diffuse bounce with the scene's sharp mesh, keeps the hits on rounded objects,
+//            and times the kernel alone on them in every mode
 #pragma once
 
 #include <cstdint>
