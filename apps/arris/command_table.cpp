@@ -11,10 +11,12 @@ OptionGroup rounding_group(const std::string& default_radius) {
   return {
       "Rounded edges",
       {{"--round", "auto|none|R|R%",
-        "radius in scene units, or in percent of each object's inradius; auto: large enough to be "
-        "seen, small enough for the part (default: " +
-            default_radius + ")"},
-       {"--round-edges", "convex|concave|both", "which edges (default: convex)"},
+        "radius in scene units, or in percent of each object's inradius (the largest ball that "
+        "fits); auto: large enough to be seen, small enough for the part (default: " +
+            default_radius + ", what the file says for scenes)"},
+       {"--round-edges", "convex|concave|both",
+        "which edges (default: convex); concave ones stay sharp in this version, and a note says "
+        "so"},
        {"--round-min-angle", "DEG",
         "edges that turn by less are part of a smooth surface (default: 30)"},
        {"--round-method", "exact|shader|mesh:N|none",
@@ -67,7 +69,7 @@ CommandRow render_row() {
          {"--material", "NAME", "replaces the file's materials; --material list shows the names"},
          {"--ground", "on|off",
           "a soft ground under the model (default: on for bare models without a camera)"}}},
-       rounding_group("auto for bare models, what the file says for scenes"),
+       rounding_group("auto for bare models"),
        {"Running",
         {{"--threads", "N", "default: all; the picture does not depend on it"},
          {"--checkpoint", "FILE",
@@ -96,7 +98,7 @@ CommandRow info_row() {
           "Prints for each object its triangles, its edges by kind, whether it is closed and "
           "convex, and what "
           "rounding would do with it.",
-          {rounding_group("auto"),
+          {rounding_group("auto for bare models"),
            {"Output",
             {{"--json", "", "as JSON, with all digits"},
              {"--threads", "N", "default: all"},
@@ -121,7 +123,7 @@ CommandRow shoot_row() {
       "started in "
       "the solid, so that t is where it leaves.",
       {{"Rays", {{"--rays", "FILE", "file of rays; - reads stdin (required)"}}},
-       rounding_group("none"),
+       rounding_group("none for bare models"),
        {"Running",
         {{"--threads", "N", "default: all"},
          {"--quiet", "", "print errors only besides the hits"},

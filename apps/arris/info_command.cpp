@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <filesystem>
 #include <nlohmann/json.hpp>
 
 #include "arris/command_line.h"
@@ -116,14 +117,15 @@ int run_info(const Arguments& arguments) {
   Scene scene = load_scene(input);
   Console console(arguments);
   for (const std::string& note : scene.notes) console.report(note);
-  if (!scene.rounding) {
+  // As render does: bare models are rounded, scene files say what they want.
+  if (!scene.rounding && std::filesystem::path(input).extension() != ".toml") {
     RoundingSettings automatic;
     automatic.method = RoundMethod::exact;
     scene.rounding = automatic;
   }
   apply_rounding_options(scene, arguments);
   Findings findings;
-  findings.scene = inspect_scene(scene, scene.rounding->min_angle);
+  findings.scene = inspect_scene(scene, scene.rounding.value_or(RoundingSettings{}).min_angle);
   findings.prepare = prepare_stats(*prepare_scene(std::move(scene), {.threads = threads}));
   if (arguments.has("--json")) {
     print_json(findings);

@@ -1,7 +1,8 @@
 #include "render/prepared_scene.h"
 
+#include <fmt/format.h>
+
 #include <chrono>
-#include <numeric>
 #include <string>
 
 #include "arris/error.h"
@@ -23,6 +24,23 @@ void throw_if_invalid(const Scene& scene) {
     text += (text.empty() ? "" : "\n") + problem;
   }
   throw Error(Error::Kind::input, "", text);
+}
+
+// The bevel shader rounds nothing: a note says what it does.
+std::vector<RoundingSummary> shader_summaries(const SceneGeometry& geometry,
+                                              const std::vector<BevelShader>& shaders) {
+  std::vector<RoundingSummary> summaries;
+  for (std::size_t i = 0; i < shaders.size(); ++i) {
+    if (!(shaders[i].delta > 0)) continue;
+    const Object& object = geometry.scene.objects[geometry.embree.records()[i].object.index];
+    RoundingSummary summary;
+    summary.object = object.name;
+    summary.notes.push_back(fmt::format(
+        "bevel shader of depth {:.4g}: normals bend near edges, the geometry stays sharp",
+        shaders[i].delta));
+    summaries.push_back(std::move(summary));
+  }
+  return summaries;
 }
 
 }  // namespace
@@ -49,6 +67,8 @@ PreparedScene::PreparedScene(std::shared_ptr<const SceneGeometry> geometry, Scen
   stats_.rounded_corners = rounding_.corners + meshed.corners;
   stats_.rounding = rounding_.summaries;
   stats_.rounding.insert(stats_.rounding.end(), meshed.summaries.begin(), meshed.summaries.end());
+  const std::vector<RoundingSummary> bent = shader_summaries(*geometry_, rounding_.shaders);
+  stats_.rounding.insert(stats_.rounding.end(), bent.begin(), bent.end());
 }
 
 PreparedScene::~PreparedScene() = default;

@@ -150,6 +150,23 @@ TEST(Info, says_none_where_rounding_is_off) {
   EXPECT_THAT(Workplace().arris("info cube.stl --round none").out, HasSubstr("rounding    none"));
 }
 
+TEST(Info, rounds_scene_files_only_as_they_say) {
+  const Workplace place;
+  test::write_text(place / "plain.toml", "[[object]]\nshape = \"box\"\n");
+  test::write_text(place / "round.toml", "round = 0.25\n[[object]]\nshape = \"box\"\n");
+  EXPECT_THAT(place.arris("info plain.toml").out, HasSubstr("rounding    none"));
+  EXPECT_THAT(place.arris("info plain.toml --round 0.2").out, HasSubstr("radius 0.2: 12 edges"));
+  EXPECT_THAT(place.arris("info round.toml").out, HasSubstr("radius 0.25: 12 edges"));
+}
+
+TEST(Info, says_that_the_bevel_shader_rounds_nothing) {
+  const Outcome run = Workplace().arris("info cube.stl --json --round 0.5 --round-method shader");
+  ASSERT_EQ(run.code, 0) << run.err;
+  const json rounding = json::parse(run.out)["objects"][0]["rounding"];
+  EXPECT_EQ(rounding["edges"], 0);
+  EXPECT_THAT(rounding["notes"].dump(), HasSubstr("bevel shader of depth 0.5"));
+}
+
 // ---- compare
 
 void save_grey(const std::filesystem::path& path, float value, int width = 8) {
