@@ -91,8 +91,10 @@ class RoundingMaker {
     }
     if (options_.edges == RoundEdges::convex || options_.edges == RoundEdges::both) return;
     // Concave edges alone: nothing that this kernel rounds.
-    for (EdgeKind& kind : kinds_) {
-      if (kind == EdgeKind::convex) kind = EdgeKind::smooth;
+    for (std::uint32_t h = 0; h < count; ++h) {
+      if (kinds_[h] != EdgeKind::convex) continue;
+      kinds_[h] = EdgeKind::smooth;
+      unasked_ += welded_.twin[h] < h ? 1 : 0;
     }
   }
 
@@ -361,8 +363,11 @@ class RoundingMaker {
     const auto note = [&](std::uint64_t count, const char* text) {
       if (count > 0) report.notes.push_back(std::to_string(count) + " " + text);
     };
-    note(other - cavities_, "solids are not convex: rounded locally along their convex edges");
-    note(open, "shells are not closed: rounded where they are locally a solid");
+    if (options_.edges != RoundEdges::concave) {
+      note(other - cavities_, "solids are not convex: rounded locally along their convex edges");
+      note(open, "shells are not closed: rounded where they are locally a solid");
+    }
+    note(unasked_, "convex edges stay sharp: only concave edges are to be rounded");
     note(cavities_, "hollows inside other solids: their edges stay sharp");
     note(report.concave_edges, "concave edges stay sharp");
     note(report.nonmanifold_edges, "non-manifold edges stay sharp");
@@ -389,7 +394,7 @@ class RoundingMaker {
   std::vector<std::uint32_t> walls_;
   bool keep_networks_ = false;
   std::vector<ShellNetwork> networks_;
-  std::uint64_t cavities_ = 0, shortened_ = 0, too_small_ = 0;
+  std::uint64_t cavities_ = 0, shortened_ = 0, too_small_ = 0, unasked_ = 0;
 };
 
 }  // namespace
