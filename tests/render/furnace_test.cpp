@@ -62,6 +62,28 @@ TEST_P(Furnace, stays_white) {
   }
 }
 
+// Light that leaked into or out of the void between sharp and rounded edges would show as grey or black.
+TEST_P(Furnace, stays_white_with_rounded_edges) {
+  Camera camera;
+  camera.position = {2, -3, 2};
+  camera.fov_deg = 28;
+  Scene scene = make_empty_scene(camera);
+  scene.image.max_depth = 100;
+  scene.environment = ConstantEnvironment{Rgb(1)};
+  scene.rounding.emplace();
+  scene.rounding->method = RoundMethod::exact;
+  scene.rounding->radius = 0.12;
+  for (const double x : {-0.4, 0.4}) {  // two blocks that touch
+    add_object(scene, make_box_mesh({0.4, 0.5, 0.6}), GetParam().material, translation({x, 0, 0}));
+  }
+  // A mirrored, unevenly scaled one that stands in both.
+  add_object(scene, make_box_mesh({1, 1, 1}), GetParam().material,
+             {{{-0.3, 0, 0}, {0, 0.9, 0}, {0, 0, 0.2}}, {0, -0.1, 0.1}});
+  const RenderResult result = render_path(scene, 256);
+  EXPECT_GT(result.rays.rounded * 20, result.rays.total);
+  EXPECT_NEAR(mean_of(result.picture.color), 1.0, GetParam().tolerance);
+}
+
 INSTANTIATE_TEST_SUITE_P(render, Furnace, testing::ValuesIn(furnace_cases()),
                          [](const auto& test) { return test.param.name; });
 

@@ -258,6 +258,18 @@ TEST(RoundingReportCounts, open_box_is_reported_and_its_rim_stays_sharp) {
   EXPECT_FALSE(rounding.report().notes.empty());
 }
 
+TEST(RoundingReportCounts, convex_edges_that_are_not_to_be_rounded_are_noted) {
+  const SolidMesh mesh = make_mesh(cube(), {}, 1);
+  RoundingOptions options;
+  options.radius = 0.1;
+  options.edges = RoundEdges::concave;
+  const Rounding rounding = make_rounding(mesh.view(), options, mesh.name);
+  EXPECT_EQ(rounding.report().rounded_edges, 0U);
+  EXPECT_EQ(
+      rounding.report().notes,
+      std::vector<std::string>{"12 convex edges stay sharp: only concave edges are to be rounded"});
+}
+
 // A T-junction is healed, or the solid is reported as open; it never gets a hole.
 TEST(RoundingReportCounts, t_junctions_are_healed_or_reported) {
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
