@@ -4,12 +4,17 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <unordered_map>
+
+#include "rounding/triangle_tree.h"
 
 namespace arris {
 namespace {
 
 // A band shallower than this, relative to the size, is no band.
 constexpr double kDepthTolerance = 1e-7;
+// Faces of more triangles than this keep them in a tree.
+constexpr std::uint32_t kTreeFrom = 32;
 
 class BandMaker {
  public:
@@ -23,8 +28,7 @@ class BandMaker {
 
   // All of a face that E doesn't have: every point of it is in the void.
   void add_whole(std::uint32_t face, const ShellNetwork& network, std::uint32_t first_arc) {
-    for (std::uint32_t i = in_.triangle_begin[face]; i < in_.triangle_begin[face + 1]; ++i) {
-      const std::uint32_t t = in_.triangles[i];
+    for (const std::uint32_t t : triangles_of(face)) {
       const Vec3d middle = (corner(t, 0) + corner(t, 1) + corner(t, 2)) / 3.0;
       double nearest = std::numeric_limits<double>::infinity();
       std::uint32_t arc = 0;
@@ -46,11 +50,16 @@ class BandMaker {
     double depth, along;
   };
 
-  // Does the triangle have points of some depth within the edge's extent? Both are linear on it: what of it is
-  // deep enough is a triangle or quadrilateral whose extent along the edge is that of its corners.
-  [[nodiscard]] bool reaches(const std::array<DepthAndAlong, 3>& corners, double along_min,
-                             double along_max) const {
-    const double least = kDepthTolerance * solid_.size;
+  // What a triangle must reach into to have a band: points of the face of some depth, within the edge's extent.
+  struct Reach {
+    double least, most;  // depth
+    double along_min, along_max;
+  };
+
+  // Depth and along are linear on the triangle: what of it has such a depth is a polygon whose extent along the
+  // edge is that of its corners.
+  [[nodiscard]] static bool reaches(const std::array<DepthAndAlong, 3>& corners,
+                                    const Reach& reach) {
     double low = std::numeric_limits<double>::infinity();
     double high = -low;
     const auto include = [&](double along) {
@@ -60,12 +69,13 @@ class BandMaker {
     for (std::size_t i = 0; i < 3; ++i) {
       const DepthAndAlong& p = corners[i];
       const DepthAndAlong& q = corners[(i + 1) % 3];
-      if (p.depth > least) include(p.along);
-      if ((p.depth > least) != (q.depth > least)) {
-        include(p.along + (q.along - p.along) * (least - p.depth) / (q.depth - p.depth));
+      if (p.depth > reach.least && p.depth <= reach.most) include(p.along);
+      for (const double bound : {reach.least, reach.most}) {
+        if ((p.depth > bound) == (q.depth > bound)) continue;
+        include(p.along + (q.along - p.along) * (bound - p.depth) / (q.depth - p.depth));
       }
     }
-    return low <= high && (solid_.exact || (high >= along_min && low <= along_max));
+    return low <= high && high >= reach.along_min && low <= reach.along_max;
   }
 
   [[nodiscard]] Vec3d corner(std::uint32_t triangle, std::size_t k) const {
@@ -78,21 +88,50 @@ class BandMaker {
     const Plane& k = in_.regions.planes[face];
     const Plane& j = in_.regions.planes[other];
     const Vec3d axis = normalize(cross(k.normal, j.normal));
-    const auto [along_min, along_max] = extent_along(source, axis);
+    const Reach reach = reach_of(source, axis, dot(j.normal, k.normal));
     const double offset =
         in_.radius * dot(j.normal, k.normal) + (j.d - in_.radius);  // of n_j·I: depth 0
-    for (std::uint32_t i = in_.triangle_begin[face]; i < in_.triangle_begin[face + 1]; ++i) {
-      const std::uint32_t t = in_.triangles[i];
+    const auto add_to = [&](std::uint32_t t) {
       std::array<DepthAndAlong, 3> corners;
       for (std::size_t c = 0; c < 3; ++c) {
         const Vec3d p = corner(t, c);
         corners[c] = {dot(j.normal, p) - offset, dot(axis, p)};
       }
-      if (!reaches(corners, along_min, along_max)) continue;
+      if (!reaches(corners, reach)) return;
       const double c0 = corners[0].depth;
       out_.push_back(
           {t, {float(c0), float(corners[1].depth - c0), float(corners[2].depth - c0), arc}});
+    };
+    const std::span<const std::uint32_t> triangles = triangles_of(face);
+    if (triangles.size() <= kTreeFrom) {
+      std::ranges::for_each(triangles, add_to);
+      return;
     }
+    const std::array<Slab, 2> slabs = {Slab{j.normal, offset + reach.least, offset + reach.most},
+                                       Slab{axis, reach.along_min, reach.along_max}};
+    tree_of(face).for_each_near(slabs, add_to);
+  }
+
+  [[nodiscard]] std::span<const std::uint32_t> triangles_of(std::uint32_t face) const {
+    const std::uint32_t first = in_.triangle_begin[face];
+    return in_.triangles.subspan(first, in_.triangle_begin[face + 1] - first);
+  }
+
+  const TriangleTree& tree_of(std::uint32_t face) {
+    const auto found = trees_.find(face);
+    if (found != trees_.end()) return found->second;
+    return trees_.try_emplace(face, in_.mesh, triangles_of(face), solid_.center).first->second;
+  }
+
+  // cosine: between the normals of the two faces.
+  [[nodiscard]] Reach reach_of(const NetworkArc& source, Vec3d axis, double cosine) const {
+    const double infinity = std::numeric_limits<double>::infinity();
+    const double least = kDepthTolerance * solid_.size;
+    if (solid_.exact) return {least, infinity, -infinity, infinity};
+    const auto [along_min, along_max] = extent_along(source, axis);
+    // Depth is r·(1 − cosine) on the edge. What of a face that isn't convex lies farther out is other edges'.
+    const double most = in_.radius * (2 - cosine) + kPlaneTolerance * solid_.size;
+    return {least, most, along_min, along_max};
   }
 
   [[nodiscard]] std::pair<double, double> extent_along(const NetworkArc& source, Vec3d axis) const {
@@ -107,6 +146,7 @@ class BandMaker {
   const BandInput& in_;
   const Solid& solid_;
   std::vector<TriangleBand>& out_;
+  std::unordered_map<std::uint32_t, TriangleTree> trees_;  // by face, as needed
 };
 
 }  // namespace

@@ -7,6 +7,7 @@
 // Guarantee  no void point of an exact solid lies outside the bands, but for a depth of 1e-7 of its size
 //            (tests/rounding/oracle_test.cpp)
 // Limits     on other solids a band may reach past the end of its edge: resolve() checks
+// Cost       a face's triangles are searched in a tree: about linear in the bands (tests/rounding/bands_test.cpp)
 #pragma once
 
 #include <cstdint>
