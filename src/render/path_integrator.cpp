@@ -31,6 +31,12 @@ float mis_weight(float pdf, float other_pdf) {
   return a > 0 && std::isfinite(a) ? a / (a + b) : 1.0F;
 }
 
+// Light that arrives at the camera if nothing is in the ray's way.
+struct Shadow {
+  TraceRay ray;
+  Rgb arriving;
+};
+
 struct Path {
   const PreparedScene& scene;
   const LightSet& lights;
@@ -84,7 +90,8 @@ struct Path {
   void add_area_lights(float t_end);
   void add_background();
   void add_emission(const SurfaceHit& hit, Rgb emission);
-  void add_sampled_light(const SurfaceHit& hit, const Frame& frame, const Bsdf& bsdf);
+  [[nodiscard]] std::optional<Shadow> sample_shadow(const SurfaceHit& hit, const Frame& frame,
+                                                    const Bsdf& bsdf);
   [[nodiscard]] bool scatter(const SurfaceHit& hit, const Frame& frame, const Bsdf& bsdf,
                              float u_lobe);
   [[nodiscard]] bool survives_roulette(float u);
@@ -138,24 +145,28 @@ bool same_side(Vec3f direction, const SurfaceHit& hit, bool transmitted) {
   return leaves_outside == ((hit.side == Side::outside) != transmitted);
 }
 
-void Path::add_sampled_light(const SurfaceHit& hit, const Frame& frame, const Bsdf& bsdf) {
+std::optional<Shadow> Path::sample_shadow(const SurfaceHit& hit, const Frame& frame,
+                                          const Bsdf& bsdf) {
+  if (!has_emitters(lights) || is_delta_only(bsdf)) {
+    return std::nullopt;
+  }
   const Vec2f u = sampler.next_2d();
   const float u_select = lights.emitters.size() > 1 ? sampler.next_1d() : 0.0F;
   const std::optional<LightSample> light = sample_light(lights, hit.position, u_select, u);
   if (!light) {
-    return;
+    return std::nullopt;
   }
   const Vec3f wi = local_from_world(frame, light->wi);
   if (!same_side(light->wi, hit, wi.z < 0)) {
-    return;
+    return std::nullopt;
   }
   const BsdfValue f = eval_bsdf_with_pdf(bsdf, wi);
   if (max_component(f.value) <= 0) {
-    return;
+    return std::nullopt;
   }
   const float weight = light->is_delta ? 1.0F : sampled_weight(light->pdf, f.pdf);
   if (weight <= 0) {
-    return;
+    return std::nullopt;
   }
   Rgb emitted = light->radiance;
   TraceRay shadow_ray = leave_surface(hit, light->wi);
@@ -165,10 +176,10 @@ void Path::add_sampled_light(const SurfaceHit& hit, const Frame& frame, const Bs
     emitted = sampled_emission(scene.geometry(), *light);
   }
   const Rgb arriving = throughput * f.value * emitted * (weight / light->pdf);
-  if (max_component(arriving) > 0) {
-    ++rays.total;
-    radiance += arriving * scene.transmittance(shadow_ray);
+  if (!(max_component(arriving) > 0)) {
+    return std::nullopt;
   }
+  return Shadow{shadow_ray, arriving};
 }
 
 bool Path::scatter(const SurfaceHit& hit, const Frame& frame, const Bsdf& bsdf, float u_lobe) {
@@ -258,13 +269,17 @@ PathSample trace_path(const PreparedScene& scene, const PathSettings& settings, 
     const Bsdf bsdf = make_bsdf(
         material, wo, hit->side == Side::inside ? MediumSide::inside : MediumSide::outside);
     path.sampler.set_dimension(kCameraDimensions + std::uint32_t(depth) * kDimensionsPerVertex);
-    if (has_emitters(path.lights) && !is_delta_only(bsdf)) {
-      path.add_sampled_light(*hit, frame, bsdf);
-    }
+    const std::optional<Shadow> shadow = path.sample_shadow(*hit, frame, bsdf);
     path.sampler.set_dimension(kCameraDimensions + std::uint32_t(depth) * kDimensionsPerVertex + 2);
     const Vec2f u = path.sampler.next_2d();
-    if (!path.scatter(*hit, frame, bsdf, u.x) ||
-        (depth >= kRouletteDepth && !path.survives_roulette(u.y))) {
+    const bool goes_on = path.scatter(*hit, frame, bsdf, u.x) &&
+                         (depth < kRouletteDepth || path.survives_roulette(u.y));
+    // Traced last: the processor overlaps the arithmetic of both samples, and then both rays.
+    if (shadow) {
+      ++rays.total;
+      path.radiance += shadow->arriving * scene.transmittance(shadow->ray);
+    }
+    if (!goes_on) {
       break;
     }
     ++depth;

@@ -35,6 +35,7 @@ inline std::optional<RTCRayHit> trace_mesh(const SceneGeometry& geometry, const 
   rtcInitIntersectContext(&context);
   std::optional<RTCRayHit> query(std::in_place);
   query->ray = make_ray(ray);
+  float step = std::numeric_limits<float>::min();
   for (;;) {
     query->hit.geomID = RTC_INVALID_GEOMETRY_ID;
     query->hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
@@ -46,8 +47,10 @@ inline std::optional<RTCRayHit> trace_mesh(const SceneGeometry& geometry, const 
     if (!is_departure(query->hit, ray.from)) [[likely]] {
       return query;
     }
-    // A plane is met once: slivers can be met again by rounding.
-    query->ray.tnear = std::nextafter(query->ray.tfar, std::numeric_limits<float>::infinity());
+    // A plane is met once: slivers can be met again by rounding. Steps that double end even where they
+    // are flushed to zero at first.
+    step = std::max(2 * step, query->ray.tfar * std::numeric_limits<float>::epsilon());
+    query->ray.tnear = query->ray.tfar + step;
     query->ray.tfar = ray.t_max;
   }
 }
