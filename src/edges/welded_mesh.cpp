@@ -209,7 +209,7 @@ class JunctionHealer {
     std::ranges::sort(vertices_, [&](std::uint32_t a, std::uint32_t b) {
       return along(a) != along(b) ? along(a) < along(b) : a < b;
     });
-    vertices_.erase(std::ranges::unique(vertices_).begin(), vertices_.end());
+    vertices_.erase(std::unique(vertices_.begin(), vertices_.end()), vertices_.end());
     split_.assign(mesh_.triangles.size(), false);
   }
 
@@ -259,9 +259,9 @@ class JunctionHealer {
 void collect_shell(WeldedMesh& mesh, std::uint32_t seed) {
   const auto index = std::uint32_t(mesh.shells.size());
   Shell shell;
-  constexpr double inf = std::numeric_limits<double>::infinity();
-  shell.bounds_min = Vec3d(inf);
-  shell.bounds_max = Vec3d(-inf);
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  shell.bounds_min = Vec3d(kInfinity);
+  shell.bounds_max = Vec3d(-kInfinity);
   shell.first_triangle = std::uint32_t(mesh.triangles_by_shell.size());
   mesh.shell[seed] = index;
   mesh.triangles_by_shell.push_back(seed);

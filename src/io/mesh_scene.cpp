@@ -11,9 +11,8 @@ namespace {
 
 // A tab may part the names of several groups.
 bool has_control_character(std::string_view name) {
-  return std::any_of(name.begin(), name.end(), [](char c) {
-    return (std::uint8_t(c) < 0x20 && c != '\t') || c == 0x7F;
-  });
+  return std::any_of(name.begin(), name.end(),
+                     [](char c) { return (std::uint8_t(c) < 0x20 && c != '\t') || c == 0x7F; });
 }
 
 }  // namespace

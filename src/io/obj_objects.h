@@ -11,8 +11,8 @@
 #include <vector>
 
 #include "arris/scene.h"
-#include "io/key_index.h"
 #include "geometry/polygon.h"
+#include "io/key_index.h"
 
 namespace arris {
 

@@ -72,7 +72,7 @@ class NetworkBuilder {
   void make_spheres();
   void split_spheres(std::uint32_t i, std::uint32_t j, std::uint32_t node, Vec3d travel);
   void link_edge_to(std::uint32_t ring_edge, std::uint32_t node);
-  bool make_arc(std::uint32_t half_edge);
+  bool make_arc(std::uint32_t first);
   std::uint32_t add_node(const NetworkNode& node);
   std::uint32_t set_end(std::uint32_t half_edge, const End& end);
   [[nodiscard]] Vec3d local(std::uint32_t vertex) const;
