@@ -4,33 +4,9 @@
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 
-// Set by CMake for the tsan preset, where this one file is compiled without instrumentation, as TBB
-// itself is: the halves of its templates that live here would be reported against the other halves.
-#ifdef ARRIS_THREAD_SANITIZER
-#include <sanitizer/tsan_interface.h>
-#endif
+#include "base/happens_before.h"
 
 namespace arris {
-namespace {
-
-// An edge of the order in time: what is before release() in one thread is before what follows a later
-// acquire() of the same object in another.
-class HappensBefore {
- public:
-#ifdef ARRIS_THREAD_SANITIZER
-  void release() {
-    __tsan_release(this);
-  }
-  void acquire() {
-    __tsan_acquire(this);
-  }
-#else
-  void release() const {}
-  void acquire() const {}
-#endif
-};
-
-}  // namespace
 
 void run_parallel(std::size_t count, const ParallelOptions& options, ParallelCall call,
                   const void* body) {

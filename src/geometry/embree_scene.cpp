@@ -10,6 +10,7 @@
 #include <string>
 
 #include "arris/error.h"
+#include "base/happens_before.h"
 
 namespace arris {
 
@@ -18,6 +19,7 @@ struct EmbreeScene::Device {
   RTCScene top = nullptr;
   std::vector<RTCScene> mesh_scenes;  // per mesh; null where the mesh is not instanced
   std::atomic<std::int64_t> bytes{0};
+  HappensBefore created, counted;  // Embree's threads call back
 
   explicit Device(int threads) {
     const std::string config = threads > 0 ? "threads=" + std::to_string(threads) : std::string();
@@ -27,10 +29,14 @@ struct EmbreeScene::Device {
                   "Embree cannot start (error " + std::to_string(int(rtcGetDeviceError(nullptr))) +
                       "): it needs an x86-64 processor with SSE2");
     }
+    created.release();
     rtcSetDeviceMemoryMonitorFunction(
         handle,
         [](void* user, ssize_t change, bool) {
-          static_cast<Device*>(user)->bytes += change;
+          auto* device = static_cast<Device*>(user);
+          device->created.acquire();
+          device->bytes += change;
+          device->counted.release();
           return true;
         },
         this);
@@ -47,6 +53,7 @@ struct EmbreeScene::Device {
       }
     }
     rtcReleaseDevice(handle);
+    counted.acquire();
   }
 };
 
