@@ -100,6 +100,7 @@ Verdict judge(const RoundedGeometry& g, const TraceRay& ray, const Candidate& c)
     verdict.hit.t = ray.t_min;
     if (start != RayStart::inside) verdict.outcome = Resolution::Outcome::passed;
   }
+  verdict.entering = dot(local.direction, r.hit.normal) < 0;
   if (g.frame != nullptr) {
     verdict.hit.normal = normalize(g.frame->world_from_rounding_normal * r.hit.normal);
   }
@@ -189,6 +190,7 @@ std::optional<RoundedTrace::Found> RoundedTrace::trace_filtered(const TraceRay& 
                                                                 const RTCHit* without) const {
   FilterContext context = make_filter_context(geometry_, rounding_, ray_);
   context.base.filter = filter_passed;
+  context.t_max = range.t_max;
   if (without != nullptr) {
     context.skip_geometry = geometry_of(*without);
     context.skip_triangle = without->primID;

@@ -29,8 +29,9 @@ inline Candidate candidate_of(const RTCHit& hit, float t) {
 
 struct Verdict {
   Resolution::Outcome outcome = Resolution::Outcome::kept;
-  RoundedHit hit;         // if moved: t of the ray, normal in world space
-  bool entering = false;  // of a resolved hit
+  RoundedHit hit;  // if moved: t of the ray, normal in world space
+  bool entering =
+      false;  // of the hit, and of what it moved to: a ray from the void may enter before it leaves
 };
 
 // Most hits: from outside, on what is kept. From inside, the ray may be leaving its void: judge() looks.
@@ -53,6 +54,7 @@ struct FilterContext {
   const SceneGeometry* geometry = nullptr;
   const SceneRounding* rounding = nullptr;
   const TraceRay* ray = nullptr;
+  float t_max = 0;  // of this search; the ray's own may be farther
   // A ray that leaves a rounded edge of this closed solid outward: what it meets of it from inside is its void's end.
   std::uint32_t own_geometry = kNoGeometry;
   std::uint32_t own_solid = kNone;
@@ -70,6 +72,7 @@ inline FilterContext make_filter_context(const SceneGeometry& geometry,
   context.geometry = &geometry;
   context.rounding = &rounding;
   context.ray = &ray;
+  context.t_max = ray.t_max;
   if (ray.from.feature != Feature::face && ray.from.side == Side::outside && rounding.any) {
     const RoundedGeometry& g = rounding.geometries[ray.from.geometry];
     const std::uint32_t solid = g.rounding->solid_of(ray.from.triangle);
@@ -96,7 +99,7 @@ inline bool is_rounded_away(FilterContext& context, const RTCHit& hit, float t) 
   }
   const Verdict verdict = judge(g, *context.ray, candidate_of(hit, t));
   const bool beyond =
-      verdict.outcome == Resolution::Outcome::moved && verdict.hit.t >= double(context.ray->t_max);
+      verdict.outcome == Resolution::Outcome::moved && verdict.hit.t >= double(context.t_max);
   if (verdict.outcome == Resolution::Outcome::passed || beyond) return true;
   context.last = verdict;
   return false;

@@ -50,15 +50,15 @@ struct Arc {
 
 // Where arcs end.
 struct Node {
-  enum class Kind : std::uint8_t {
+  enum class Kind : std::uint32_t {
     sphere,  // a corner: centre of a rounding sphere
     mitre,   // two cylinders meet in a plane: a chain of rounded edges bends at smooth edges
     cap,     // the rounding ends at a plane: its edge runs into a concave corner or fades out
   };
   Vec3f position;
   std::uint32_t first_link = 0;
-  std::uint16_t link_count = 0;
-  Kind kind = Kind::sphere;
+  std::uint32_t link_count : 30 = 0;
+  Kind kind : 2 = Kind::sphere;
 };
 
 struct Face {
@@ -89,7 +89,7 @@ struct Rounding::Data {
   std::vector<Arc> arcs;
   std::vector<Node> nodes;
   std::vector<std::uint32_t>
-      links;  // arcs at each node; a cap's second link is its wall face or kNone
+      links;  // arcs at each node; a cap's last link is its wall face or kNone
   std::vector<Solid> solids;
   std::unique_ptr<const DetectionTree> tree;  // with Detection::kd_tree
   RoundingReport report;

@@ -29,6 +29,8 @@ class Network {
   [[nodiscard]] std::uint32_t link(const Node& n, std::uint32_t i) const {
     return data_.links[n.first_link + i];
   }
+  // A cap's last link: the face it lies in, or kNone.
+  [[nodiscard]] std::uint32_t wall_of(const Node& n) const { return link(n, n.link_count - 1); }
   // Direction in which arc `index` leaves node `from`.
   [[nodiscard]] Vec3d leaving(std::uint32_t index, std::uint32_t from) const {
     const Vec3d e(arc(index).line.axis);
@@ -52,7 +54,7 @@ class Network {
         return {Vec3d(n.position),
                 normalize(leaving_here - leaving(other_at_mitre(n, index), node_index))};
       case Node::Kind::cap:
-        if (link(n, 1) != kNone) return {point, Vec3d(face(link(n, 1)).normal)};
+        if (wall_of(n) != kNone) return {point, Vec3d(face(wall_of(n)).normal)};
         break;
     }
     return {point, leaving_here};

@@ -193,9 +193,9 @@ void check_rounding(const std::string& where, const RoundingSettings& rounding,
           where, part->percent));
     }
   }
-  if (!(rounding.min_angle > 0 && rounding.min_angle < kPi)) {
+  if (!(rounding.min_angle >= 0 && rounding.min_angle <= kPi)) {
     problems.push_back(
-        fmt::format("{}: min_angle is {:g} degrees; it must be more than 0 and less than 180",
+        fmt::format("{}: min_angle is {:g} degrees; use 0 to 180",
                     where, degrees(rounding.min_angle)));
   }
   check_range(where, "rounding subdivisions", rounding.subdivisions, 1, 64, problems);

@@ -84,6 +84,24 @@ TEST_P(Furnace, stays_white_with_rounded_edges) {
   EXPECT_NEAR(mean_of(result.picture.color), 1.0, GetParam().tolerance);
 }
 
+// A ray that starts on the sharp box, in the void of the rounded one, enters that from outside.
+TEST(FurnaceOfTwo, a_sharp_box_in_a_rounded_one_stays_white) {
+  Camera camera;
+  camera.position = {5, -6, 4};
+  camera.fov_deg = 28;
+  Scene scene = make_empty_scene(camera);
+  scene.image.max_depth = 64;
+  scene.environment = ConstantEnvironment{Rgb(1)};
+  RoundingSettings rounding;
+  rounding.method = RoundMethod::exact;
+  rounding.radius = 0.2;
+  add_object(scene, make_box_mesh({2, 2, 2}), make_lambert(1));
+  scene.objects.back().rounding = rounding;
+  add_object(scene, make_box_mesh({2, 2, 2}), make_lambert(1), translation({0.7, 0.6, 0.5}));
+  const Picture picture = render_path(scene, 64).picture;
+  for (const float value : picture.color.values) EXPECT_GT(value, 0.97F);
+}
+
 INSTANTIATE_TEST_SUITE_P(render, Furnace, testing::ValuesIn(furnace_cases()),
                          [](const auto& test) { return test.param.name; });
 
