@@ -4,6 +4,8 @@
 
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
 
 #include "arris/command_line.h"
 #include "arris/commands.h"
@@ -20,9 +22,9 @@ struct Findings {
   PrepareStats prepare;
 };
 
-const RoundingSummary* find_summary(const Findings& findings, const std::string& object) {
+const RoundingSummary* find_summary(const Findings& findings, std::size_t object) {
   for (const RoundingSummary& summary : findings.prepare.rounding) {
-    if (summary.object == object) return &summary;
+    if (summary.object_index == object) return &summary;
   }
   return nullptr;
 }
@@ -37,7 +39,9 @@ nlohmann::ordered_json to_json(const EdgeCounts& e) {
 }
 
 nlohmann::ordered_json to_json(const RoundingSummary& r) {
-  return {{"radius", r.radius}, {"edges", r.edges}, {"corners", r.corners}, {"notes", r.notes}};
+  std::vector<std::string> notes;
+  for (const RoundingNote& note : r.notes) notes.push_back(note.text());
+  return {{"radius", r.radius}, {"edges", r.edges}, {"corners", r.corners}, {"notes", notes}};
 }
 
 nlohmann::ordered_json to_json(const ObjectReport& o, const RoundingSummary* rounding) {
@@ -58,8 +62,8 @@ void print_json(const Findings& findings) {
       {"triangles", scene.triangles},
       {"bounds", {{"min", to_json(scene.bounds_min)}, {"max", to_json(scene.bounds_max)}}},
       {"objects", nlohmann::ordered_json::array()}};
-  for (const ObjectReport& object : scene.objects) {
-    json["objects"].push_back(to_json(object, find_summary(findings, object.name)));
+  for (std::size_t i = 0; i < scene.objects.size(); ++i) {
+    json["objects"].push_back(to_json(scene.objects[i], find_summary(findings, i)));
   }
   const auto replace = nlohmann::ordered_json::error_handler_t::replace;
   fmt::print("{}\n", json.dump(2, ' ', false, replace));
@@ -95,7 +99,7 @@ void print_object(const ObjectReport& object, const RoundingSummary* rounding) {
                rounding->edges, rounding->corners);
   }
   if (rounding == nullptr) return;
-  for (const std::string& note : rounding->notes) fmt::print("              {}\n", note);
+  for (const RoundingNote& note : rounding->notes) fmt::print("              {}\n", note.text());
 }
 
 void print_report(const Findings& findings, const std::string& input) {
@@ -103,8 +107,8 @@ void print_report(const Findings& findings, const std::string& input) {
   fmt::print("{}: {} triangles in {} {}\n", input, scene.triangles, scene.objects.size(),
              scene.objects.size() == 1 ? "object" : "objects");
   fmt::print("size {}\n", format_bounds(scene.bounds_min, scene.bounds_max));
-  for (const ObjectReport& object : scene.objects) {
-    print_object(object, find_summary(findings, object.name));
+  for (std::size_t i = 0; i < scene.objects.size(); ++i) {
+    print_object(scene.objects[i], find_summary(findings, i));
   }
 }
 

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <string>
+#include <utility>
 #include <variant>
 #include <vector>
 
@@ -11,8 +12,6 @@
 
 namespace arris::program {
 namespace {
-
-constexpr std::size_t kMostLines = 4;
 
 bool has_automatic_radius(const Scene& scene) {
   const auto is_automatic = [](const RoundingSettings& settings) {
@@ -34,6 +33,42 @@ std::string radii(const std::vector<const RoundingSummary*>& rounded) {
                      : fmt::format("radii {:.4g} to {:.4g}", low, high);
 }
 
+// A note of several objects is said once, with their number; in detail for each object.
+void report_notes(Console& console, const std::vector<RoundingSummary>& summaries) {
+  struct Sum {
+    RoundingNote note;
+    std::size_t objects = 0;
+    std::string object;  // the first
+  };
+  std::vector<Sum> sums;  // in the order of appearance
+  for (const RoundingSummary& summary : summaries) {
+    for (const RoundingNote& note : summary.notes) {
+      auto sum = std::ranges::find(sums, note.many, [](const Sum& s) { return s.note.many; });
+      if (sum == sums.end()) {
+        Sum start;
+        start.note = {0, note.one, note.many};
+        start.object = summary.object;
+        sums.push_back(std::move(start));
+        sum = sums.end() - 1;
+      }
+      sum->note.count += note.count;
+      ++sum->objects;
+    }
+  }
+  bool any_merged = false;
+  for (const Sum& sum : sums) {
+    any_merged = any_merged || sum.objects > 1;
+    console.report(sum.objects == 1 ? fmt::format("{}: {}", sum.object, sum.note.text())
+                                    : fmt::format("{} objects: {}", sum.objects, sum.note.text()));
+  }
+  if (!any_merged) return;
+  for (const RoundingSummary& summary : summaries) {
+    for (const RoundingNote& note : summary.notes) {
+      console.detail(fmt::format("{}: {}", summary.object, note.text()));
+    }
+  }
+}
+
 }  // namespace
 
 void report_rounding(Console& console, const Scene& scene, const PrepareStats& stats) {
@@ -46,22 +81,7 @@ void report_rounding(Console& console, const Scene& scene, const PrepareStats& s
         "rounded {} edges and {} corners, {}{}", stats.rounded_edges, stats.rounded_corners,
         radii(rounded), has_automatic_radius(scene) ? " (automatic; --round R sets it)" : ""));
   }
-  std::size_t notes = 0;
-  for (const RoundingSummary& summary : stats.rounding) {
-    for (const std::string& note : summary.notes) {
-      const std::string line = fmt::format("{}: {}", summary.object, note);
-      ++notes;
-      if (notes <= kMostLines) {
-        console.report(line);
-      } else {
-        console.detail(line);
-      }
-    }
-  }
-  if (notes > kMostLines) {
-    console.report(
-        fmt::format("… and {} more notes on rounding; --verbose shows all", notes - kMostLines));
-  }
+  report_notes(console, stats.rounding);
 }
 
 }  // namespace arris::program

@@ -36,10 +36,11 @@ std::shared_ptr<const PreparedScene> prepare_again(const PreparedScene& prepared
 
 // What rounding did to one object.
 struct RoundingSummary {
-  std::string object;
+  std::string object;  // its name, and its place in Scene::objects
+  std::uint32_t object_index = 0;
   double radius = 0;  // world units; 0: not rounded
   std::uint64_t edges = 0, corners = 0;
-  std::vector<std::string> notes;  // "2 concave edges stay sharp", …: docs/rounding.md lists them
+  std::vector<RoundingNote> notes;  // docs/rounding.md lists them
 };
 
 struct PrepareStats {

@@ -101,12 +101,23 @@ struct Resolution {
   RoundedHit hit;
 };
 
+// What could not be rounded, and why: "3 concave edges stay sharp".
+struct RoundingNote {
+  std::uint64_t count = 0;  // 0: nothing to count, `many` is the whole text
+  std::string one, many;    // what follows a count of 1, and any other
+
+  [[nodiscard]] std::string text() const {
+    if (count == 0) return many;
+    return std::to_string(count) + " " + (count == 1 ? one : many);
+  }
+};
+
 struct RoundingReport {
   std::uint64_t solids = 0, convex_solids = 0, exact_solids = 0, open_solids = 0;
   std::uint64_t rounded_edges = 0, rounded_corners = 0;
   std::uint64_t concave_edges = 0, smooth_edges = 0, boundary_edges = 0, nonmanifold_edges = 0;
   std::uint64_t bytes = 0;
-  std::vector<std::string> notes;  // what could not be rounded, and why
+  std::vector<RoundingNote> notes;
 };
 
 class Rounding {
@@ -153,9 +164,10 @@ class Rounding {
 // How large a radius fits.
 struct RadiusLimits {
   std::optional<double> smallest_inradius;  // of the closed convex solids
-  std::optional<double> typical_inradius;   // their median
-  // Where there are none: the median of half the length of the edges that would be rounded.
-  std::optional<double> typical_edge;
+  // The median over closed convex solids and others with an edge to round. Half the width of a closed convex solid is its inradius, that of
+  // others the smaller of volume / area (half a wall) and area / outline (half a face): however finely curved
+  // edges are cut into facets, it stays the same.
+  std::optional<double> typical_half_width;
 };
 RadiusLimits find_radius_limits(const MeshView& mesh, double min_angle,
                                 const std::string& name = "");

@@ -35,9 +35,12 @@ std::vector<RoundingSummary> shader_summaries(const SceneGeometry& geometry,
     const Object& object = geometry.scene.objects[geometry.embree.records()[i].object.index];
     RoundingSummary summary;
     summary.object = object.name;
-    summary.notes.push_back(fmt::format(
-        "bevel shader of depth {:.4g}: normals bend near edges, the geometry stays sharp",
-        shaders[i].delta));
+    summary.object_index = geometry.embree.records()[i].object.index;
+    summary.notes.push_back(
+        {0, "",
+         fmt::format(
+             "bevel shader of depth {:.4g}: normals bend near edges, the geometry stays sharp",
+             shaders[i].delta)});
     summaries.push_back(std::move(summary));
   }
   return summaries;

@@ -15,8 +15,7 @@ namespace arris {
 namespace {
 
 // An automatic radius takes at most this part of what fits.
-constexpr double kAutoPartOfInradius = 0.3;
-constexpr double kAutoPartOfEdge = 0.3;
+constexpr double kAutoPartOfHalfWidth = 0.3;
 
 std::vector<Vec3f> transformed_positions(const Mesh& mesh, const Affine3d& m) {
   std::vector<Vec3f> out;
@@ -137,8 +136,8 @@ class Maker {
       }
       out_.edges += report.rounded_edges;
       out_.corners += report.rounded_corners;
-      out_.summaries.push_back({object.name, task.options.radius * scale, report.rounded_edges,
-                                report.rounded_corners, report.notes});
+      out_.summaries.push_back({object.name, r.object.index, task.options.radius * scale,
+                                report.rounded_edges, report.rounded_corners, report.notes});
     }
     out_.roundings.push_back(std::move(task.result));
   }
@@ -188,11 +187,8 @@ double auto_radius(const Scene& scene, const Mesh& mesh, const Object& object,
   const double readable =
       readable_radius(*scene.camera, scene.image, center_of(mesh, object.world_from_object));
   const RadiusLimits limits = limits_of(mesh, object, settings.min_angle);
-  if (limits.typical_inradius) {
-    return std::min(readable, kAutoPartOfInradius * *limits.typical_inradius);
-  }
-  if (limits.typical_edge) return std::min(readable, kAutoPartOfEdge * *limits.typical_edge);
-  return 0;
+  if (!limits.typical_half_width) return 0;  // no edge to round
+  return std::min(readable, kAutoPartOfHalfWidth * *limits.typical_half_width);
 }
 
 }  // namespace

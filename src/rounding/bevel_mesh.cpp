@@ -212,12 +212,13 @@ class BevelMaker {
   void report() {
     out_.kept_solids = folded_ + mixed_;
     out_.notes = parts_.data->report.notes;
-    const auto note = [&](std::uint64_t count, const char* text) {
-      if (count > 0) out_.notes.push_back(std::to_string(count) + " " + text);
+    const auto note = [&](std::uint64_t count, const char* one, const char* many) {
+      if (count > 0) out_.notes.push_back({count, one, many});
     };
-    note(folded_,
+    note(folded_, "solid keeps its sharp triangles: a meshed bevel of this radius would fold over",
          "solids keep their sharp triangles: a meshed bevel of this radius would fold over");
-    note(mixed_, "solids keep their sharp triangles: faces of several materials are not meshed");
+    note(mixed_, "solid keeps its sharp triangles: faces of several materials are not meshed",
+         "solids keep their sharp triangles: faces of several materials are not meshed");
   }
 
   const Mesh& source_;

@@ -28,7 +28,7 @@ struct BevelMesh {
   Mesh mesh;
   std::uint64_t bevelled_solids = 0, kept_solids = 0;
   std::uint64_t rounded_edges = 0, rounded_corners = 0;
-  std::vector<std::string> notes;
+  std::vector<RoundingNote> notes;
 };
 
 // Errors as make_rounding(). Precondition: subdivisions ≥ 1.

@@ -360,19 +360,26 @@ class RoundingMaker {
     }
     report.open_solids = open;
     report.bytes = bytes();
-    const auto note = [&](std::uint64_t count, const char* text) {
-      if (count > 0) report.notes.push_back(std::to_string(count) + " " + text);
+    const auto note = [&](std::uint64_t count, const char* one, const char* many) {
+      if (count > 0) report.notes.push_back({count, one, many});
     };
     if (options_.edges != RoundEdges::concave) {
-      note(other - cavities_, "solids are not convex: rounded locally along their convex edges");
-      note(open, "shells are not closed: rounded where they are locally a solid");
+      note(other - cavities_, "solid is not convex: rounded locally along its convex edges",
+           "solids are not convex: rounded locally along their convex edges");
+      note(open, "shell is not closed: rounded where it is locally a solid",
+           "shells are not closed: rounded where they are locally a solid");
     }
-    note(unasked_, "convex edges stay sharp: only concave edges are to be rounded");
-    note(cavities_, "hollows inside other solids: their edges stay sharp");
-    note(report.concave_edges, "concave edges stay sharp");
-    note(report.nonmanifold_edges, "non-manifold edges stay sharp");
-    note(shortened_, "edges stay sharp: the radius needs more length than they have");
-    note(too_small_, "solids stay sharp: no ball of the radius fits into them");
+    note(unasked_, "convex edge stays sharp: only concave edges are to be rounded",
+         "convex edges stay sharp: only concave edges are to be rounded");
+    note(cavities_, "hollow inside another solid: its edges stay sharp",
+         "hollows inside other solids: their edges stay sharp");
+    note(report.concave_edges, "concave edge stays sharp", "concave edges stay sharp");
+    note(report.nonmanifold_edges, "non-manifold edge stays sharp",
+         "non-manifold edges stay sharp");
+    note(shortened_, "edge stays sharp: the radius needs more length than it has",
+         "edges stay sharp: the radius needs more length than they have");
+    note(too_small_, "solid stays sharp: no ball of the radius fits into it",
+         "solids stay sharp: no ball of the radius fits into them");
   }
 
   [[nodiscard]] std::uint64_t bytes() const {

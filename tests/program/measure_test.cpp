@@ -137,6 +137,19 @@ TEST(Info, reports_a_cube_as_it_is) {
   EXPECT_EQ(cube["rounding"]["corners"], 8);
 }
 
+TEST(Info, tells_objects_of_one_name_apart) {
+  const Workplace place;
+  test::write_text(place / "two.toml",
+                   "[[object]]\nfile = \"cube.stl\"\nname = \"a\"\nround = 0.1\n"
+                   "[[object]]\nfile = \"cube.stl\"\nname = \"a\"\nround = 0.2\n"
+                   "translate = [4, 0, 0]\n");
+  const Outcome run = place.arris("info two.toml --json");
+  ASSERT_EQ(run.code, 0) << run.err;
+  const json objects = json::parse(run.out)["objects"];
+  EXPECT_EQ(objects[0]["rounding"]["radius"].get<double>(), 0.1);
+  EXPECT_EQ(objects[1]["rounding"]["radius"].get<double>(), 0.2);
+}
+
 TEST(Info, prints_a_report_to_read) {
   const Outcome run = Workplace().arris("info cube.stl");
   ASSERT_EQ(run.code, 0) << run.err;

@@ -251,6 +251,23 @@ TEST(Interrupted, killed_at_once_leaves_the_old_file) {
   EXPECT_EQ(place.read("a.png"), "old");
 }
 
+TEST(RoundingNotes, of_several_objects_are_said_once) {
+  const Workplace place;
+  test::write_text(place / "open.off",
+                   "OFF\n4 3 0\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n"
+                   "3 0 2 1\n3 0 1 3\n3 0 3 2\n");
+  test::write_text(place / "two.toml",
+                   "round = { radius = 0.05 }\n"
+                   "[[object]]\nfile = \"open.off\"\nname = \"a\"\n"
+                   "[[object]]\nfile = \"open.off\"\nname = \"b\"\ntranslate = [4, 0, 0]\n");
+  const std::string render = "render two.toml --size 16x12 --spp 1 -o a.png";
+  const Outcome run = place.arris(render);
+  ASSERT_EQ(run.code, 0) << run.err;
+  EXPECT_THAT(run.err, HasSubstr("2 objects: 2 shells are not closed"));
+  EXPECT_THAT(run.err, Not(HasSubstr("a: 1 shell")));
+  EXPECT_THAT(place.arris(render + " --verbose").err, HasSubstr("b: 1 shell is not closed"));
+}
+
 TEST(Interrupted, a_time_limit_is_no_failure) {
   const Workplace place;
   const Outcome run = place.arris("render cube.stl --size 40x30 --time 0.3 -o a.exr");

@@ -319,7 +319,7 @@ TEST(BevelMesh, keeps_triangles_and_says_so_where_a_face_has_several_materials) 
   EXPECT_EQ(bevel.kept_solids, 1U);
   EXPECT_EQ(bevel.mesh.triangles.size(), 12U);
   ASSERT_FALSE(bevel.notes.empty());
-  EXPECT_NE(bevel.notes.back().find("several materials"), std::string::npos);
+  EXPECT_NE(bevel.notes.back().text().find("several materials"), std::string::npos);
 }
 
 TEST(BevelMesh, rejects_what_the_exact_rounding_rejects) {

@@ -265,9 +265,9 @@ TEST(RoundingReportCounts, convex_edges_that_are_not_to_be_rounded_are_noted) {
   options.edges = RoundEdges::concave;
   const Rounding rounding = make_rounding(mesh.view(), options, mesh.name);
   EXPECT_EQ(rounding.report().rounded_edges, 0U);
-  EXPECT_EQ(
-      rounding.report().notes,
-      std::vector<std::string>{"12 convex edges stay sharp: only concave edges are to be rounded"});
+  ASSERT_EQ(rounding.report().notes.size(), 1U);
+  EXPECT_EQ(rounding.report().notes[0].text(),
+            "12 convex edges stay sharp: only concave edges are to be rounded");
 }
 
 // A T-junction is healed, or the solid is reported as open; it never gets a hole.
