@@ -164,9 +164,9 @@ class Rounding {
 // How large a radius fits.
 struct RadiusLimits {
   std::optional<double> smallest_inradius;  // of the closed convex solids
-  // The median over closed convex solids and others with an edge to round. Half the width of a closed convex solid is its inradius, that of
-  // others the smaller of volume / area (half a wall) and area / outline (half a face): however finely curved
-  // edges are cut into facets, it stays the same.
+  // The median over closed convex solids and others with an edge to round. Half the width of a closed convex
+  // solid is its inradius, that of others the smaller of volume / area (half a wall) and area / outline (half
+  // a face): however finely curved edges are cut into facets, it stays the same.
   std::optional<double> typical_half_width;
 };
 RadiusLimits find_radius_limits(const MeshView& mesh, double min_angle,

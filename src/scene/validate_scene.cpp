@@ -194,9 +194,8 @@ void check_rounding(const std::string& where, const RoundingSettings& rounding,
     }
   }
   if (!(rounding.min_angle >= 0 && rounding.min_angle <= kPi)) {
-    problems.push_back(
-        fmt::format("{}: min_angle is {:g} degrees; use 0 to 180",
-                    where, degrees(rounding.min_angle)));
+    problems.push_back(fmt::format("{}: min_angle is {:g} degrees; use 0 to 180", where,
+                                   degrees(rounding.min_angle)));
   }
   check_range(where, "rounding subdivisions", rounding.subdivisions, 1, 64, problems);
   check_range(where, "bevel shader divisions", rounding.shader.divisions, 1, 64, problems);
