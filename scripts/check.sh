@@ -5,7 +5,7 @@
 #
 # Usage        scripts/check.sh [STEP…]     all steps by default
 # Environment  ARRIS_FUZZ_SECONDS           time for each fuzzer, 15 by default
-#              ARRIS_TIDY_SECONDS           time limit of clang-tidy, 900 by default
+#              ARRIS_TIDY_SECONDS           time limit of clang-tidy, 1800 by default
 set -uo pipefail
 cd "$(dirname "$0")/.."
 

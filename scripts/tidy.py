@@ -5,7 +5,7 @@ A file that passed is not looked at again until it, a header of the project that
 .clang-tidy changes (stamps in build/tidy/). Files still waiting when the time is over count as failed.
 
 Usage        tidy.py [FILE…]        the files of the release preset's compile_commands.json by default
-Environment  ARRIS_TIDY_SECONDS     the time limit, 900 by default
+Environment  ARRIS_TIDY_SECONDS     the time limit, 1800 by default
 """
 
 import concurrent.futures
@@ -83,7 +83,7 @@ def findings_of(text):
 
 
 def main():
-    deadline = time.monotonic() + float(os.environ.get("ARRIS_TIDY_SECONDS", "900"))
+    deadline = time.monotonic() + float(os.environ.get("ARRIS_TIDY_SECONDS", "1800"))
     STAMPS.mkdir(parents=True, exist_ok=True)
     wanted = {Path(name).resolve() for name in sys.argv[1:]} or sources()
     waiting = {path: stamp_of(path) for path in wanted}

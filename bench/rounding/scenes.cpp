@@ -156,13 +156,14 @@ void scatter(Scene& scene, int count, const Layout& layout, Random& random) {
   for (std::size_t k = 0; k < kinds.size(); ++k) {
     const int at = int(k) % (layout.columns * layout.rows),
               up = int(k) / (layout.columns * layout.rows);
+    const int row = at / layout.columns;
     const Piece piece = random_piece(kinds[k], random);
     Affine3d placed{random.rotation(), {}};
     const double half =
         up % 2 == 0 ? 0 : 0.5;  // every other layer lies in the gaps of the one below
     placed.translation = {(at % layout.columns - 0.5 * (layout.columns - 1) + half) * layout.pitch +
                               random.uniform(-layout.spread, layout.spread),
-                          (at / layout.columns - 0.5 * (layout.rows - 1) + half) * layout.pitch +
+                          (row - 0.5 * (layout.rows - 1) + half) * layout.pitch +
                               random.uniform(-layout.spread, layout.spread),
                           0};
     placed.translation.z = 0.002 + up * layout.layer - lowest_z(piece, placed);
@@ -236,7 +237,7 @@ BenchScene make_blocks() {
   }
   for (int column = 0; column < kColumns; ++column)
     for (int row = 0; row < kRows; ++row)
-      for (int level = 0; level < height[std::size_t(column * kRows + row)]; ++level)
+      for (int level = 0; level < height[std::size_t(column) * kRows + std::size_t(row)]; ++level)
         add_object(
             bench.scene,
             make_brick("brick" + std::to_string(bench.scene.objects.size()), column, row, level),

@@ -75,8 +75,8 @@ Plane filter_rows(const Plane& in, const Kernel& kernel) {
     const float* row = &in.values[std::size_t(y) * std::size_t(in.width)];
     for (int x = 0; x < in.width; ++x) {
       float sum = 0;
-      for (int i = -radius; i <= radius; ++i) {
-        sum += kernel[std::size_t(i + radius)] * row[std::clamp(x + i, 0, in.width - 1)];
+      for (std::size_t tap = 0; tap < kernel.size(); ++tap) {
+        sum += kernel[tap] * row[std::clamp(x + int(tap) - radius, 0, in.width - 1)];
       }
       out.values[std::size_t(y) * std::size_t(in.width) + std::size_t(x)] = sum;
     }
@@ -90,9 +90,10 @@ Plane filter_columns(const Plane& in, const Kernel& kernel) {
   const std::size_t width = std::size_t(in.width);
   for (int y = 0; y < in.height; ++y) {
     float* sums = &out.values[std::size_t(y) * width];
-    for (int i = -radius; i <= radius; ++i) {
-      const float weight = kernel[std::size_t(i + radius)];
-      const float* row = &in.values[std::size_t(std::clamp(y + i, 0, in.height - 1)) * width];
+    for (std::size_t tap = 0; tap < kernel.size(); ++tap) {
+      const float weight = kernel[tap];
+      const int y_in = std::clamp(y + int(tap) - radius, 0, in.height - 1);
+      const float* row = &in.values[std::size_t(y_in) * width];
       for (std::size_t x = 0; x < width; ++x) sums[x] += weight * row[x];
     }
   }

@@ -85,9 +85,11 @@ Bytes binary_cube(std::endian order) {
   }
   for (int i = 0; i < 8; ++i) {
     file.add(std::uint8_t(200));
-    file.add(double((i + 1) % 4 / 2));
+    const int column = (i + 1) % 4 / 2;
+    const int row = i / 4;
+    file.add(double(column));
     file.add(std::int16_t(i % 4 / 2));
-    file.add(float(i / 4));
+    file.add(float(row));
     file.add(std::int32_t(1));
     file.add(std::int8_t(7));
   }

@@ -81,7 +81,8 @@ TEST(BevelShader, leaves_faces_far_from_edges_alone) {
   const auto scene = prepare_scene(cube_scene(steep_settings(0.1)));
   const auto wide = prepare_scene(cube_scene(shader_settings(0.1)));
   for (int i = 0; i < 400; ++i) {
-    const float x = -0.5F + 0.05F * float(i % 20), y = -0.5F + 0.05F * float(i / 20);
+    const int row = i / 20;
+    const float x = -0.5F + 0.05F * float(i % 20), y = -0.5F + 0.05F * float(row);
     const BevelShading shading = shade(*scene, x, y);
     EXPECT_FLOAT_EQ(shading.fac, 1);
     EXPECT_GT(shading.normal.z, 1 - 1e-6F);
@@ -136,7 +137,8 @@ TEST(BevelShader, averages_normals_as_the_area_of_the_directions_says) {
 TEST(BevelShader, counts_every_ray_within_a_closed_convex_solid_near_its_size) {
   const auto scene = prepare_scene(cube_scene(shader_settings(0.9, 4)));
   for (int i = 0; i < 100; ++i) {
-    const float x = -0.9F + 0.2F * float(i % 10), y = -0.9F + 0.2F * float(i / 10);
+    const int row = i / 10;
+    const float x = -0.9F + 0.2F * float(i % 10), y = -0.9F + 0.2F * float(row);
     EXPECT_FLOAT_EQ(shade(*scene, x, y).fac, 1);
   }
 }

@@ -21,7 +21,8 @@ struct LightCase {
   std::vector<EmissiveTriangle> triangles;
 };
 
-void PrintTo(const LightCase& c, std::ostream* out) {
+// The name is GoogleTest's.
+void PrintTo(const LightCase& c, std::ostream* out) {  // NOLINT(readability-identifier-naming)
   *out << c.name;
 }
 

@@ -160,8 +160,7 @@ inline double angle_deg(Vec3d a, Vec3d b) {
 class Judge {
  public:
   Judge(const SolidMesh& mesh, const Opening& opening)
-      : mesh_(mesh),
-        opening_(opening),
+      : opening_(opening),
         size_(mesh.solid.size),
         t_tolerance_(1e-5 * size_ + 8 * mesh.quantum),
         normal_tolerance_deg_(0.2 + degrees(4 * mesh.quantum / opening.radius())),
@@ -226,7 +225,6 @@ class Judge {
     return s;
   }
 
-  const SolidMesh& mesh_;
   const Opening& opening_;
   double size_, t_tolerance_, normal_tolerance_deg_, surface_tolerance_;
 };
