@@ -148,19 +148,19 @@ GgxAlbedo ggx_albedo(float cos_o, float roughness) {
     const float fresnel = schlick_weight(cos_o);
     return {1.0F - fresnel, fresnel};
   }
-  static const ReflectionTable table = make_reflection_table();
-  return bilinear(table, interpolation_at(roughness, kRoughnesses),
+  static const ReflectionTable kTable = make_reflection_table();
+  return bilinear(kTable, interpolation_at(roughness, kRoughnesses),
                   interpolation_at(std::sqrt(cos_o), kCosines));
 }
 
 float glass_albedo(float cos_o, float roughness, float eta) {
-  static const GlassTable table = make_glass_table();
+  static const GlassTable kTable = make_glass_table();
   const float x = (eta - 1.0F) / (eta + 1.0F);
   const Interpolation slice = interpolation_at(0.5F + 0.5F * x / kGlassEtaRange, kGlassEtas);
   const Interpolation row = interpolation_at(roughness, kGlassRoughnesses);
   const Interpolation column = interpolation_at(std::sqrt(cos_o), kGlassCosines);
-  return mix(bilinear(table[slice.node], row, column), bilinear(table[slice.node + 1], row, column),
-             slice.fraction);
+  return mix(bilinear(kTable[slice.node], row, column),
+             bilinear(kTable[slice.node + 1], row, column), slice.fraction);
 }
 
 }  // namespace arris

@@ -76,8 +76,8 @@ inline Vec3f direction_of(float cos_theta, float phi) {
 
 // From straight above to near grazing.
 inline const std::vector<float>& outgoing_cosines() {
-  static const std::vector<float> cosines = {1.0F, 0.8F, 0.4F, 0.12F};
-  return cosines;
+  static const std::vector<float> kCosines = {1.0F, 0.8F, 0.4F, 0.12F};
+  return kCosines;
 }
 
 }  // namespace arris::test
