@@ -151,6 +151,7 @@ class Rounding {
   // Outward unit normal of a triangle's flat region.
   [[nodiscard]] Vec3d face_normal(std::uint32_t triangle) const;
 
+  // The reference lives as long as the rounding.
   [[nodiscard]] const RoundingReport& report() const;
 
   struct Data;

@@ -200,7 +200,7 @@ TEST(RoundingReportCounts, cube_has_twelve_edges_and_eight_corners_in_every_styl
     MeshStyle style = random_style(rng);
     style.split = i % 2 == 0 ? EdgeSplit::shared : EdgeSplit::none;
     const SolidMesh mesh = make_mesh(cube(), style, std::uint64_t(i));
-    const RoundingReport& report = make_rounded(mesh, 0.1 * mesh.solid.size / 2).report();
+    const RoundingReport report = make_rounded(mesh, 0.1 * mesh.solid.size / 2).report();
     EXPECT_EQ(report.rounded_edges, 12U) << i;
     EXPECT_EQ(report.rounded_corners, 8U) << i;
     EXPECT_EQ(report.solids, 1U) << i;
