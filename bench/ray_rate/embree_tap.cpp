@@ -21,9 +21,9 @@ Function next_symbol(const char* name) {
 }  // namespace
 
 const EmbreeCalls& embree_calls() {
-  static const EmbreeCalls calls{next_symbol<decltype(EmbreeCalls::intersect)>("rtcIntersect1"),
-                                 next_symbol<decltype(EmbreeCalls::occluded)>("rtcOccluded1")};
-  return calls;
+  static const EmbreeCalls kCalls{next_symbol<decltype(EmbreeCalls::intersect)>("rtcIntersect1"),
+                                  next_symbol<decltype(EmbreeCalls::occluded)>("rtcOccluded1")};
+  return kCalls;
 }
 
 void start_recording() {
@@ -37,20 +37,18 @@ Recording stop_recording() {
 
 }  // namespace arris::bench
 
-extern "C" void rtcIntersect1(RTCScene scene, RTCIntersectContext* context, RTCRayHit* query) {
-  using namespace arris::bench;
-  if (tap.recording) {
-    tap.record.rays.push_back({query->ray, false});
+extern "C" void rtcIntersect1(RTCScene scene, RTCIntersectContext* context, RTCRayHit* rayhit) {
+  if (auto& tap = arris::bench::tap; tap.recording) {
+    tap.record.rays.push_back({rayhit->ray, false});
     tap.record.scene = scene;
   }
-  embree_calls().intersect(scene, context, query);
+  arris::bench::embree_calls().intersect(scene, context, rayhit);
 }
 
-extern "C" void rtcOccluded1(RTCScene scene, RTCIntersectContext* context, RTCRay* query) {
-  using namespace arris::bench;
-  if (tap.recording) {
-    tap.record.rays.push_back({*query, true});
+extern "C" void rtcOccluded1(RTCScene scene, RTCIntersectContext* context, RTCRay* ray) {
+  if (auto& tap = arris::bench::tap; tap.recording) {
+    tap.record.rays.push_back({*ray, true});
     tap.record.scene = scene;
   }
-  embree_calls().occluded(scene, context, query);
+  arris::bench::embree_calls().occluded(scene, context, ray);
 }

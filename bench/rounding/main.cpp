@@ -18,7 +18,7 @@
 namespace {
 
 using nlohmann::json;
-using namespace arris::bench;
+using namespace arris::bench;  // NOLINT(google-build-using-namespace): a program's one file
 
 struct Arguments {
   std::vector<std::string> scenes = bench_scene_names();

@@ -14,7 +14,7 @@
 
 namespace {
 
-using namespace arris;
+using namespace arris;  // NOLINT(google-build-using-namespace): a program's one file
 using Clock = std::chrono::steady_clock;
 
 constexpr std::uint32_t kRuns = 200;
@@ -68,7 +68,7 @@ void measure_sampler() {
 }
 
 void measure_material(std::string_view name, const SurfaceMaterial& material) {
-  static const std::vector<Numbers> numbers = drawn_numbers();
+  static const std::vector<Numbers> kNumbers = drawn_numbers();
   const auto wo = [](std::uint32_t i) {
     const auto x = float(i % 16) * 0.05F;
     return normalize(Vec3f{x, 0.3F, 0.8F});
@@ -81,7 +81,7 @@ void measure_material(std::string_view name, const SurfaceMaterial& material) {
     return f.value.x + f.pdf;
   });
   const double sample = nanoseconds([&](std::uint32_t i) {
-    const Numbers n = numbers[i % 4096];
+    const Numbers n = kNumbers[i % 4096];
     const auto s = sample_bsdf(bsdf, n.lobe, n.u);
     return s ? s->weight.x + s->wi.x : 0.0F;
   });
@@ -91,15 +91,15 @@ void measure_material(std::string_view name, const SurfaceMaterial& material) {
 
 void measure_lights(std::string_view name, const std::vector<Light>& lights,
                     const Environment& environment) {
-  static const std::vector<Numbers> numbers = drawn_numbers();
+  static const std::vector<Numbers> kNumbers = drawn_numbers();
   const LightSet set = make_light_set(lights, environment, {}, {{0, 0, 0}, 2});
   const double sample = nanoseconds([&](std::uint32_t i) {
-    const Numbers n = numbers[i % 4096];
+    const Numbers n = kNumbers[i % 4096];
     const auto s = sample_light(set, {n.u.x, 0, 0}, n.lobe, n.u);
     return s ? s->radiance.x + s->pdf : 0.0F;
   });
   const double miss = nanoseconds([&](std::uint32_t i) {
-    const Numbers n = numbers[i % 4096];
+    const Numbers n = kNumbers[i % 4096];
     const EnvironmentValue v =
         eval_environment_with_pdf(set, normalize(Vec3f{n.lobe - 0.5F, n.u.x - 0.5F, n.u.y}));
     return v.radiance.x + v.pdf;

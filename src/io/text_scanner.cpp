@@ -78,7 +78,6 @@ TextScanner::TextScanner(std::span<const std::uint8_t> bytes, std::string file)
     : begin_(reinterpret_cast<const char*>(bytes.data())),
       next_(begin_),
       end_(begin_ + bytes.size()),
-      newline_(nullptr),
       file_(std::move(file)) {
   if (std::string_view(begin_, bytes.size()).starts_with("\xEF\xBB\xBF")) next_ += 3;
 }
