@@ -60,7 +60,8 @@ class TextScanner {
   const char* begin_;
   const char* next_;  // start of the line after this one
   const char* end_;
-  const char* newline_ = nullptr;  // the first LF at next_ or later, once looked for; end_ if there is none
+  // The first LF at next_ or later, once looked for; end_ if there is none.
+  const char* newline_ = nullptr;
   std::string_view line_;
   std::size_t line_number_ = 0;
   std::string file_;
