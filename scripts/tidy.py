@@ -2,9 +2,9 @@
 """tidy.py — runs clang-tidy over the project's sources, on all cores.
 
 A file that passed is not looked at again until it, a header of the project that it includes, or
-.clang-tidy changes (stamps in build/tidy/). Files still waiting when the time is over count as failed.
+.clang-tidy changes (stamps in build/tidy/stamps/). Files still waiting when the time is over count as failed.
 
-Usage        tidy.py [FILE…]        the files of the release preset's compile_commands.json by default
+Usage        tidy.py [FILE…]        the files of the tidy preset's compile_commands.json by default
 Environment  ARRIS_TIDY_SECONDS     the time limit, 1800 by default
 """
 
@@ -19,8 +19,8 @@ import time
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
-BUILD = ROOT / "build" / "release"
-STAMPS = ROOT / "build" / "tidy"
+BUILD = ROOT / "build" / "tidy"
+STAMPS = BUILD / "stamps"
 FOLDERS = ("src", "apps", "tests", "bench", "examples")
 INCLUDE = re.compile(r'^\s*#\s*include\s*["<]([^">]+)[">]', re.MULTILINE)
 FINDING = re.compile(r"^\S+:\d+:\d+: (error|warning): |^error: ")
@@ -49,6 +49,7 @@ def stamp_of(path):
 
 
 def sources():
+    subprocess.run(["cmake", "--preset", "tidy"], cwd=ROOT, check=True, stdout=subprocess.DEVNULL)
     commands = json.loads((BUILD / "compile_commands.json").read_text())
     paths = {Path(command["directory"], command["file"]).resolve() for command in commands}
     return {p for p in paths if p.is_relative_to(ROOT) and p.relative_to(ROOT).parts[0] in FOLDERS}
