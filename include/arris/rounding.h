@@ -68,6 +68,8 @@ struct RoundedHit {
   Vec3d normal;  // unit, outward from the solid
   Feature feature = Feature::face;
   std::uint32_t arc = ~std::uint32_t{0};  // of an edge, for blend_of()
+  // The arc between whose ends the ray crossed the void, or entered it to pass; ~0: it came by a corner.
+  std::uint32_t crossed = ~std::uint32_t{0};
 };
 
 // How a point of an edge's cylinder lies between the two faces beside it: normal = Σ weight · face_normal. A host that
@@ -135,6 +137,17 @@ class Rounding {
   // inside, too.
   [[nodiscard]] Resolution resolve(const Ray& ray, const MeshHit& hit,
                                    RayStart start = RayStart::unknown) const;
+
+  // Where a ray leaves the sharp mesh of an exact solid: the paper's I″. From a place beside an arc (RoundedHit::crossed) at
+  // a t of the ray: nothing if the way out leads past the arc's ends. Cost: linear in the solid's faces, constant with
+  // an arc.
+  struct Exit {
+    double t = 0;
+    double cosine = 0;  // between the ray and the outward normal there; > 0
+  };
+  [[nodiscard]] Exit find_exit(std::uint32_t solid, const Ray& ray) const;
+  [[nodiscard]] std::optional<Exit> find_exit_beside(std::uint32_t arc, const Ray& ray,
+                                                     double start) const;
 
   // Whether a point, in the mesh's space, lies in the rounded solid. Exact solids only (see is_exact).
   // Cost: linear in the solid's faces.

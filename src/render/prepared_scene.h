@@ -33,6 +33,7 @@ struct Departure {
   std::uint32_t triangle = 0;
   Side side = Side::none;
   Feature feature = Feature::face;
+  std::uint32_t crossed = kNone;  // RoundedHit's
 };
 
 struct TraceRay {
@@ -57,6 +58,7 @@ struct SurfaceHit {
   ObjectId object;
   Side side = Side::outside;  // where the ray came from
   Feature feature = Feature::face;
+  std::uint32_t crossed = kNone;  // RoundedHit's
   bool rounding_seen = false;  // the ray met a rounded edge or corner: there, or passing one before
 };
 
@@ -102,7 +104,8 @@ inline TraceRay leave_surface(const SurfaceHit& hit, Vec3f direction) {
   ray.origin =
       hit.position + hit.geometric_normal * (outward ? hit.position_error : -hit.position_error);
   ray.direction = direction;
-  ray.from = {hit.geometry, hit.triangle, outward ? Side::outside : Side::inside, hit.feature};
+  ray.from = {hit.geometry, hit.triangle, outward ? Side::outside : Side::inside, hit.feature,
+              hit.crossed};
   return ray;
 }
 

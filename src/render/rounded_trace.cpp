@@ -21,6 +21,32 @@ bool leaves_own_void(const RoundedGeometry& g, const TraceRay& ray, const Candid
   return ray.from.feature != Feature::face && !g.is_kept(c.triangle, c.u, c.v);
 }
 
+// A place in the void of an exact solid.
+struct VoidPlace {
+  std::uint32_t geometry, solid;
+  std::uint32_t crossed;  // RoundedHit's
+  double t;               // of the ray
+};
+
+// Where a ray may begin again beyond the mesh that it leaves: past the rounding errors of that mesh, and before anything
+// that is kVoidMargin away. Nothing if another solid could be met on the way there, or if the ray leaves at so
+// small an angle that there is no such place.
+std::optional<float> find_way_out(const SceneGeometry& geometry, const RoundedGeometry& g,
+                                  const VoidPlace& place, const Ray& local) {
+  std::optional<Rounding::Exit> exit;
+  if (place.crossed != kNone && g.neighbors_of(place.solid, place.crossed) == VoidNeighbors::none) {
+    exit = g.rounding->find_exit_beside(place.crossed, local, place.t);
+  }
+  if (!exit && g.neighbors_of(place.solid, kNone) == VoidNeighbors::none) {
+    exit = g.rounding->find_exit(place.solid, local);
+  }
+  if (!exit) return std::nullopt;
+  const double step = kVoidMargin / 2 * g.rounding->data().solids[place.solid].size;
+  const double error = 4 * double(geometry.embree.records()[place.geometry].position_error);
+  if (!(exit->cosine * step > error)) return std::nullopt;
+  return float(exit->t + step);
+}
+
 // Drops hits that the ray passes.
 void filter_passed(const RTCFilterFunctionNArguments* args) {
   if (args->valid[0] != -1) return;
@@ -88,8 +114,8 @@ Verdict judge(const RoundedGeometry& g, const TraceRay& ray, const Candidate& c)
     }
     if (start == RayStart::outside) start = RayStart::unknown;
   }
-  // From inside, a kept hit may still be that of a ray that starts in the void.
-  const bool settled = verdict.entering || start == RayStart::inside || !solid.exact;
+  // From inside, a kept hit may still be that of a ray that starts in the void. From outside, it is not judged.
+  const bool settled = !verdict.entering && (start == RayStart::inside || !solid.exact);
   if (settled && g.is_kept(c.triangle, c.u, c.v)) return verdict;
   const Resolution r = g.rounding->resolve(local, {c.triangle, c.u, c.v, c.t}, start);
   verdict.outcome = r.outcome;
@@ -107,18 +133,52 @@ Verdict judge(const RoundedGeometry& g, const TraceRay& ray, const Candidate& c)
   return verdict;
 }
 
-std::optional<SurfaceHit> RoundedTrace::settle(const RTCRayHit& first) const {
-  const RoundedGeometry& g = rounding_.geometries[geometry_of(first.hit)];
-  const Verdict verdict = judge(g, ray_, candidate_of(first.hit, first.ray.tfar));
-  switch (verdict.outcome) {
-    case Resolution::Outcome::kept:
-      return make_surface_hit(geometry_, ray_, first);
-    case Resolution::Outcome::moved:
-      return moved(first, verdict);
-    case Resolution::Outcome::passed:
-      break;
+std::optional<TraceRay> skip_void(const SceneGeometry& geometry, const SceneRounding& rounding,
+                                  const TraceRay& ray) {
+  const std::uint32_t index = ray.from.geometry;
+  const RoundedGeometry& g = rounding.geometries[index];
+  if (g.rounding == nullptr || g.frame != nullptr) return std::nullopt;
+  const std::uint32_t solid_index = g.rounding->solid_of(ray.from.triangle);
+  if (!g.rounding->data().solids[solid_index].exact) return std::nullopt;
+  const Ray local = g.local_ray(ray.origin, ray.direction);
+  const std::optional<float> t =
+      find_way_out(geometry, g, {index, solid_index, ray.from.crossed, 0}, local);
+  if (!t) return std::nullopt;
+  TraceRay beyond = ray;
+  beyond.t_min = std::max(ray.t_min, *t);
+  beyond.from = {};
+  return beyond;
+}
+
+std::optional<SurfaceHit> RoundedTrace::settle(RTCRayHit first) const {
+  for (bool passed_any = false;; passed_any = true) {
+    const std::uint32_t geometry = geometry_of(first.hit);
+    const RoundedGeometry& g = rounding_.geometries[geometry];
+    const Candidate candidate = candidate_of(first.hit, first.ray.tfar);
+    const Verdict verdict = g.rounding != nullptr ? judge(g, ray_, candidate) : Verdict{};
+    if (verdict.outcome == Resolution::Outcome::moved) return moved(first, verdict);
+    if (verdict.outcome == Resolution::Outcome::kept) {
+      SurfaceHit hit = make_surface_hit(geometry_, ray_, first);
+      hit.rounding_seen = passed_any;
+      return hit;
+    }
+    const std::optional<float> beyond = way_past(g, candidate, verdict);
+    if (!beyond) return passed(first, verdict);
+    TraceRay rest = ray_;
+    rest.t_min = std::max(*beyond, first.ray.tfar);
+    const std::optional<RTCRayHit> next = trace_mesh(geometry_, rest);
+    if (!next) return std::nullopt;
+    first = *next;
   }
-  return passed(first, verdict);
+}
+
+// Where a ray that passes a hit has left the mesh again, if no other solid can be in between.
+std::optional<float> RoundedTrace::way_past(const RoundedGeometry& g, const Candidate& c,
+                                            const Verdict& verdict) const {
+  const std::uint32_t solid = g.rounding->solid_of(c.triangle);
+  if (!g.rounding->data().solids[solid].exact || g.frame != nullptr) return std::nullopt;
+  return find_way_out(geometry_, g, {c.geometry, solid, verdict.hit.crossed, double(c.t)},
+                      g.local_ray(ray_.origin, ray_.direction));
 }
 
 std::optional<SurfaceHit> RoundedTrace::trace_from_void() const {
@@ -130,7 +190,9 @@ std::optional<SurfaceHit> RoundedTrace::trace_from_void() const {
 std::optional<SurfaceHit> RoundedTrace::moved(const RTCRayHit& query,
                                               const Verdict& verdict) const {
   const RoundedGeometry& g = rounding_.geometries[geometry_of(query.hit)];
-  if (verdict.entering && g.is_crowded(verdict.hit.arc) && verdict.hit.t > double(query.ray.tfar)) {
+  const bool crosses = verdict.entering && verdict.hit.t > double(query.ray.tfar);
+  if (crosses && g.neighbors_of(g.rounding->solid_of(query.hit.primID), verdict.hit.crossed) ==
+                     VoidNeighbors::inside) {
     // Something else may reach into the void that the ray crosses first.
     TraceRay across = ray_;
     across.t_min = query.ray.tfar;
@@ -180,6 +242,7 @@ SurfaceHit RoundedTrace::move_hit(const RTCRayHit& query, const Verdict& verdict
   hit.geometric_normal = Vec3f(verdict.hit.normal);
   hit.side = verdict.entering ? Side::outside : Side::inside;
   hit.feature = verdict.hit.feature;
+  hit.crossed = verdict.hit.crossed;
   hit.rounding_seen = true;
   hit.shading_normal =
       blended_normal(geometry_, rounding_.geometries[hit.geometry], hit, verdict.hit);

@@ -5,12 +5,15 @@
 //            touches the object from outside at the very distance where it leaves (the main picture of the
 //            paper, its Fig. 9), with no resume distance and no tolerance. A ray that leaves a rounded edge starts in
 //            the void, where the first hit is always its own solid's back: it is traced with the filter at once.
+//            Where no other solid is near (void_neighbors.h), the void is crossed in one step instead, without a filter.
 // Guarantee  never a hole: a solid that is not rounded exactly is passed only where the ray enters and leaves
 //            within what the rounding takes away; elsewhere its face stands
 // Included   by trace.cpp only
 // Source     Courtin et al. §4, Fig. 7. There a secondary ray starts on the mesh, at I″; here it starts at I′, with the
 //            filter, as I″ lies on the face of any solid that touches
 #pragma once
+
+#include <limits>
 
 #include "render/embree_hit.h"
 #include "render/scene_rounding.h"
@@ -45,6 +48,42 @@ inline bool is_plainly_kept(const RoundedGeometry& g, const TraceRay& ray, const
              g.local_ray(ray.origin, ray.direction).direction) < 0;
 }
 
+// The closest triangle that the ray does not start on.
+inline std::optional<RTCRayHit> trace_mesh(const SceneGeometry& geometry, const TraceRay& ray) {
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  std::optional<RTCRayHit> query(std::in_place);
+  query->ray = make_ray(ray);
+  float step = std::numeric_limits<float>::min();
+  for (;;) {
+    query->hit.geomID = RTC_INVALID_GEOMETRY_ID;
+    query->hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
+    rtcIntersect1(geometry.embree.handle(), &context, &*query);
+    if (query->hit.geomID == RTC_INVALID_GEOMETRY_ID) {
+      query.reset();
+      return query;
+    }
+    if (!is_departure(query->hit, ray.from)) [[likely]] {
+      return query;
+    }
+    // A plane is met once: slivers can be met again by rounding. Steps that double end even where they
+    // are flushed to zero at first.
+    step = std::max(2 * step, query->ray.tfar * std::numeric_limits<float>::epsilon());
+    query->ray.tnear = query->ray.tfar + step;
+    query->ray.tfar = ray.t_max;
+  }
+}
+
+// Between the sharp and the rounded surface: where rays leave a rounded edge outward.
+inline bool starts_in_void(const TraceRay& ray) {
+  return ray.from.feature != Feature::face && ray.from.side == Side::outside;
+}
+
+// A ray that starts in the void of an exact solid, begun where it has left the mesh, as in the paper. Nothing if it could
+// miss another solid that touches there or reaches into the void.
+std::optional<TraceRay> skip_void(const SceneGeometry& geometry, const SceneRounding& rounding,
+                                  const TraceRay& ray);
+
 // What becomes of one hit on a rounded geometry.
 Verdict judge(const RoundedGeometry& g, const TraceRay& ray, const Candidate& c);
 
@@ -73,7 +112,7 @@ inline FilterContext make_filter_context(const SceneGeometry& geometry,
   context.rounding = &rounding;
   context.ray = &ray;
   context.t_max = ray.t_max;
-  if (ray.from.feature != Feature::face && ray.from.side == Side::outside && rounding.any) {
+  if (rounding.any && starts_in_void(ray)) {
     const RoundedGeometry& g = rounding.geometries[ray.from.geometry];
     const std::uint32_t solid = g.rounding->solid_of(ray.from.triangle);
     if (g.frame == nullptr && !g.any_turned && g.rounding->data().solids[solid].closed) {
@@ -111,7 +150,7 @@ class RoundedTrace {
   RoundedTrace(const SceneGeometry& geometry, const SceneRounding& rounding, const TraceRay& ray)
       : geometry_(geometry), rounding_(rounding), ray_(ray) {}
 
-  std::optional<SurfaceHit> settle(const RTCRayHit& first) const;
+  std::optional<SurfaceHit> settle(RTCRayHit first) const;
   std::optional<SurfaceHit> trace_from_void() const;
 
  private:
@@ -124,6 +163,8 @@ class RoundedTrace {
                                                 const Verdict& verdict) const;
   [[nodiscard]] std::optional<SurfaceHit> passed(const RTCRayHit& query,
                                                  const Verdict& verdict) const;
+  [[nodiscard]] std::optional<float> way_past(const RoundedGeometry& g, const Candidate& c,
+                                              const Verdict& verdict) const;
   [[nodiscard]] bool leaves_kept(const RTCRayHit& entry, const RTCRayHit& exit) const;
   [[nodiscard]] SurfaceHit finish(const Found& found) const;
   [[nodiscard]] SurfaceHit move_hit(const RTCRayHit& query, const Verdict& verdict) const;

@@ -9,7 +9,7 @@
 #include "arris/error.h"
 #include "base/parallel_for.h"
 #include "render/auto_radius.h"
-#include "render/crowded_arcs.h"
+#include "render/void_neighbors.h"
 
 namespace arris {
 namespace {
@@ -50,7 +50,7 @@ class Maker {
     parallel_for(tasks_.size(), {.grain = 1, .threads = options_.threads},
                  [&](std::size_t i) { build(tasks_[i]); });
     for (Task& task : tasks_) attach(task);
-    if (out_.any) find_crowded_arcs(geometry_, out_);
+    if (out_.any) find_void_neighbors(geometry_, out_, options_.threads);
     out_.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     return std::move(out_);
   }

@@ -24,22 +24,32 @@ struct RoundingFrame {
   Mat3d world_from_rounding_normal;
 };
 
+// What other solids have to do with the void between a sharp and a rounded edge: see void_neighbors.h.
+enum class VoidNeighbors : std::uint8_t {
+  none,      // all are farther from it than kVoidMargin
+  touching,  // some may touch it
+  inside,    // some may reach into it
+};
+// Relative to the size of the rounded solid.
+constexpr double kVoidMargin = 5e-4;
+
 // Rounding of one geometry, by EmbreeScene::records() index. All null: not rounded. Small: every hit reads it.
 struct RoundedGeometry {
   const std::uint32_t* band_begin = nullptr;  // null also where a kd-tree detects
   const Band* bands = nullptr;
   const Rounding* rounding = nullptr;
   const RoundingFrame* frame = nullptr;  // null: world space
-  // Arcs with other solids in their void, between the sharp and the rounded edge; null: none.
-  const std::vector<bool>* crowded = nullptr;
+  // Of every arc, between its ends, then of every solid, with its corners; null: none.
+  const VoidNeighbors* neighbors = nullptr;
   bool any_turned = false;  // some shell's winding points inward
 
   [[nodiscard]] bool is_kept(std::uint32_t triangle, float u, float v) const {
     return band_begin != nullptr && is_kept_by_bands(band_begin, bands, triangle, u, v);
   }
-  // arc of a moved hit; corners have none.
-  [[nodiscard]] bool is_crowded(std::uint32_t arc) const {
-    return crowded != nullptr && (arc == kNone || (*crowded)[arc]);
+  // Of the void that a ray crosses: beside an arc, or kNone for anywhere in the solid's.
+  [[nodiscard]] VoidNeighbors neighbors_of(std::uint32_t solid, std::uint32_t arc) const {
+    if (neighbors == nullptr) return VoidNeighbors::none;
+    return neighbors[arc != kNone ? arc : rounding->data().arcs.size() + solid];
   }
   [[nodiscard]] Ray local_ray(Vec3f origin, Vec3f direction) const {
     const Ray world{Vec3d(origin), Vec3d(direction)};
@@ -62,7 +72,7 @@ struct SceneRounding {
   std::vector<RoundedGeometry> geometries;
   std::vector<std::shared_ptr<const Rounding>> roundings;
   std::vector<std::unique_ptr<const RoundingFrame>> frames;
-  std::vector<std::unique_ptr<std::vector<bool>>> crowded;  // per geometry
+  std::vector<std::vector<VoidNeighbors>> neighbors;  // per geometry; empty: none
   bool any = false;
   std::vector<BevelShader> shaders;  // by geometry; empty if none has one
   // What was built, for PrepareStats.

@@ -29,32 +29,6 @@ void filter_shadow(const RTCFilterFunctionNArguments* args) {
   if (context->transmittance > 0) args->valid[0] = 0;
 }
 
-// The closest triangle that the ray does not start on.
-inline std::optional<RTCRayHit> trace_mesh(const SceneGeometry& geometry, const TraceRay& ray) {
-  RTCIntersectContext context;
-  rtcInitIntersectContext(&context);
-  std::optional<RTCRayHit> query(std::in_place);
-  query->ray = make_ray(ray);
-  float step = std::numeric_limits<float>::min();
-  for (;;) {
-    query->hit.geomID = RTC_INVALID_GEOMETRY_ID;
-    query->hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
-    rtcIntersect1(geometry.embree.handle(), &context, &*query);
-    if (query->hit.geomID == RTC_INVALID_GEOMETRY_ID) {
-      query.reset();
-      return query;
-    }
-    if (!is_departure(query->hit, ray.from)) [[likely]] {
-      return query;
-    }
-    // A plane is met once: slivers can be met again by rounding. Steps that double end even where they
-    // are flushed to zero at first.
-    step = std::max(2 * step, query->ray.tfar * std::numeric_limits<float>::epsilon());
-    query->ray.tnear = query->ray.tfar + step;
-    query->ray.tfar = ray.t_max;
-  }
-}
-
 // Embree's context with the one geometry to be met.
 struct ObjectContext {
   RTCIntersectContext base;  // first, so that a pointer to it is a pointer to this
@@ -86,10 +60,13 @@ std::optional<ObjectHit> PreparedScene::intersect_object(const TraceRay& ray,
   return ObjectHit{hit.t, hit.triangle, hit.geometric_normal, hit.shading_normal};
 }
 
-std::optional<SurfaceHit> PreparedScene::intersect(const TraceRay& ray) const {
+std::optional<SurfaceHit> PreparedScene::intersect(const TraceRay& whole) const {
   std::optional<SurfaceHit> hit;
-  const bool from_void = ray.from.feature != Feature::face && ray.from.side == Side::outside;
-  if (from_void && rounding_.any) [[unlikely]] {
+  const bool from_void = rounding_.any && starts_in_void(whole);
+  const std::optional<TraceRay> beyond =
+      from_void ? skip_void(*geometry_, rounding_, whole) : std::nullopt;
+  const TraceRay& ray = beyond ? *beyond : whole;
+  if (from_void && !beyond) [[unlikely]] {
     hit = RoundedTrace(*geometry_, rounding_, ray).trace_from_void();
   } else if (const std::optional<RTCRayHit> first = trace_mesh(*geometry_, ray)) {
     const std::uint32_t geometry = geometry_of(first->hit);
@@ -107,7 +84,11 @@ std::optional<SurfaceHit> PreparedScene::intersect(const TraceRay& ray) const {
   return hit;
 }
 
-float PreparedScene::transmittance(const TraceRay& ray) const {
+float PreparedScene::transmittance(const TraceRay& whole) const {
+  const std::optional<TraceRay> beyond = rounding_.any && starts_in_void(whole)
+                                             ? skip_void(*geometry_, rounding_, whole)
+                                             : std::nullopt;
+  const TraceRay& ray = beyond ? *beyond : whole;
   FilterContext context = make_filter_context(*geometry_, rounding_, ray);
   if (rounding_.any || geometry_->any_translucent) {
     context.base.filter = filter_shadow;

@@ -3,6 +3,7 @@
 //            which the paper only names (§3), is the mirror image: walked back from where the ray leaves P.
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <span>
 
 #include "rounding/rounding_data.h"
@@ -126,6 +127,38 @@ std::uint32_t deepest_band(const Rounding::Data& data, const MeshHit& hit) {
   return arc;
 }
 
+// A hit from outside, and the arc of its deepest band or kNone.
+struct Entry {
+  std::uint32_t arc;
+  const Ray& ray;
+  const MeshHit& hit;
+};
+
+// Most hits on exact solids end here: kept, or settled between the ends of one arc. False: `out` is as it was.
+bool settle_shortly(const Rounding::Data& data, const Solid& solid, const Entry& entry,
+                    Resolution& out) {
+  const Face& face = data.faces[data.face[entry.hit.triangle]];
+  const Vec3d normal(face.normal);
+  const Vec3d direction = entry.ray.direction;
+  const Vec3d origin = entry.ray.origin - solid.center;
+  const double facing = dot(normal, direction);
+  const bool grazes = facing * facing < kGrazing * kGrazing * length_squared(direction);
+  const double t = grazes ? entry.hit.t : (face.d - dot(normal, origin)) / facing;
+  if (entry.arc == kNone) {
+    out.hit = {t, normal};
+    return true;
+  }
+  const ShortWalk quick = walk_short(data, entry.arc, origin + direction * t, direction);
+  if (!quick.certain) return false;
+  out.outcome = Resolution::Outcome::passed;
+  out.hit.crossed = entry.arc;
+  if (quick.hit) {
+    out.outcome = Resolution::Outcome::moved;
+    out.hit = {t + quick.hit->distance, quick.hit->normal, Feature::edge, entry.arc, entry.arc};
+  }
+  return true;
+}
+
 // Solids that aren't exact: the first band that the point really lies in.
 std::optional<Place> detect_by_bands(const Rounding::Data& data, const Solid& solid,
                                      const MeshHit& hit, Vec3d x) {
@@ -207,12 +240,18 @@ Resolution Rounding::resolve(const Ray& ray, const MeshHit& hit, RayStart start)
   out.hit.t = hit.t;
   const std::uint32_t face_index = data_->face[hit.triangle];
   if (face_index == kNone) return out;
-  const std::uint32_t solid_index = data_->faces[face_index].solid;
-  const Solid& solid = data_->solids[solid_index];
+  const Face& face = data_->faces[face_index];
+  const Solid& solid = data_->solids[face.solid];
+  const bool entering = dot(Vec3d(face.normal), ray.direction) < 0;
+  std::uint32_t arc = kNone;
+  if (solid.exact && !data_->tree) {
+    arc = deepest_band(*data_, hit);
+    if (entering && !solid.rewired && settle_shortly(*data_, solid, {arc, ray, hit}, out)) {
+      return out;
+    }
+  }
   const FaceHit at = locate(*data_, ray, hit);
-  const Face& face = data_->faces[at.face];
-  out.hit = {at.t, Vec3d(face.normal), Feature::face, kNone};
-  const bool entering = dot(Vec3d(face.normal), at.direction) < 0;
+  out.hit = {at.t, Vec3d(face.normal)};
   if (!entering && solid.exact && start != RayStart::inside) {
     const Vec3d origin = ray.origin - solid.center;
     if (start == RayStart::outside || is_in_void(*data_, solid, origin)) {
@@ -225,21 +264,47 @@ Resolution Rounding::resolve(const Ray& ray, const MeshHit& hit, RayStart start)
     place = detect_by_tree(*data_, solid, face_index, at.x);
   } else if (!solid.exact) {
     place = detect_by_bands(*data_, solid, hit, at.x);
-  } else {
-    const std::uint32_t arc = deepest_band(*data_, hit);
-    if (arc == kNone) return out;
-    if (!solid.rewired) {
-      const ShortWalk quick = walk_short(*data_, arc, at.x, direction);
-      if (quick.certain) {
-        finish(out, quick.hit, at, entering);
-        return out;
-      }
-    }
+  } else if (arc != kNone) {
     place = place_of(*data_, solid, arc, at.x);
   }
   if (!place) return out;
   finish(out, walk(*data_, solid, *place, at.x, direction), at, entering);
   return out;
+}
+
+Rounding::Exit Rounding::find_exit(std::uint32_t solid_index, const Ray& ray) const {
+  const Solid& solid = data_->solids[solid_index];
+  const Vec3d origin = ray.origin - solid.center;
+  Exit exit{std::numeric_limits<double>::infinity(), 0};
+  for (std::uint32_t f = solid.first_face; f < solid.first_face + solid.face_count; ++f) {
+    const Face& face = data_->faces[f];
+    const double approach = dot(Vec3d(face.normal), ray.direction);
+    if (approach <= 0) continue;
+    const double t = (face.d - dot(Vec3d(face.normal), origin)) / approach;
+    if (t < exit.t) exit = {t, approach};
+  }
+  return exit;
+}
+
+std::optional<Rounding::Exit> Rounding::find_exit_beside(std::uint32_t arc_index, const Ray& ray,
+                                                         double start) const {
+  const Arc& arc = data_->arcs[arc_index];
+  const Vec3d rel =
+      ray.origin - data_->solids[data_->faces[arc.face_a].solid].center - Vec3d(arc.line.p0);
+  Exit exit{std::numeric_limits<double>::infinity(), 0};
+  for (const std::uint32_t f : {arc.face_a, arc.face_b}) {
+    const Vec3d normal(data_->faces[f].normal);
+    const double approach = dot(normal, ray.direction);
+    if (approach <= 0) continue;
+    const double t = (data_->radius - dot(normal, rel)) / approach;
+    if (t < exit.t) exit = {t, approach};
+  }
+  const Vec3d axis(arc.line.axis);
+  const double at = dot(axis, rel), speed = dot(axis, ray.direction);
+  const double begin = at + speed * start, end = at + speed * exit.t;
+  const double length = arc.line.length;
+  if (!(begin >= 0 && begin <= length && end >= 0 && end <= length)) return std::nullopt;
+  return exit;
 }
 
 bool Rounding::contains(std::uint32_t solid_index, Vec3d point) const {

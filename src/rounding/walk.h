@@ -40,7 +40,8 @@ struct WalkHit {
 };
 
 // The commonest walk of all: x lies between the ends of an exact solid's arc, and the ray meets its cylinder before it
-// leaves that slab, or moves away. `certain` is false where walk() must decide.
+// leaves that slab, or moves away. `certain` is false where walk() must decide. The direction may have any length, in
+// which the distance is then counted.
 struct ShortWalk {
   bool certain = false;
   std::optional<WalkHit> hit;
