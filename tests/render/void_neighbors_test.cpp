@@ -1,0 +1,151 @@
+// Rays that cross the void of a rounded edge in one step meet what they meet when traced through it.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+#include "render/prepared_scene.h"
+#include "render/scene_geometry.h"
+#include "render/scene_rounding.h"
+#include "support/convex_solids.h"
+#include "support/render_scenes.h"
+
+namespace arris::test {
+namespace {
+
+using oracle::Random;
+using oracle::uniform;
+
+constexpr double kRadius = 0.06;
+
+struct Heap {
+  const char* name;
+  double step;     // between the pieces' places
+  double scatter;  // about them
+  bool
+      turned;  // each its own way; else faces of neighbours are parallel, and coincide if step is 1
+};
+
+// Cubes, prisms and dodecahedra of about unit size on a ground plane.
+Scene make_heap(const Heap& heap, std::uint64_t seed) {
+  Random random(seed);
+  Scene scene = make_empty_scene({.position = {6, -8, 6}, .target = {}});
+  constexpr double kScales[] = {1, 0.5, 0.3};
+  const std::vector<oracle::Polyhedron> kinds{oracle::cube(), oracle::prism(6, 1.0),
+                                              oracle::dodecahedron()};
+  for (int i = 0; i < 4; ++i) {
+    for (int j = 0; j < 4; ++j) {
+      for (int k = 0; k < 3; ++k) {
+        const auto pick = heap.turned ? std::size_t(oracle::uniform_int(random, 0, 2)) : 0;
+        const oracle::SolidMesh solid =
+            oracle::make_mesh(kinds[pick], {.scale = kScales[pick]}, random());
+        Mesh mesh;
+        mesh.name = solid.name;
+        mesh.positions = solid.positions;
+        mesh.triangles = solid.triangles;
+        Affine3d place;
+        if (heap.turned) place.linear = oracle::random_rotation(random);
+        place.translation = Vec3d(i, j, k) * heap.step +
+                            oracle::random_direction(random) * uniform(random, 0, heap.scatter);
+        add_object(scene, std::move(mesh), make_lambert(0.5F), place);
+      }
+    }
+  }
+  add_object(scene, make_square_mesh(20), make_lambert(0.5F), translation({0, 0, -0.501}))
+      .rounding = RoundingSettings{};
+  RoundingSettings rounding;
+  rounding.method = RoundMethod::exact;
+  rounding.radius = kRadius;
+  scene.rounding = rounding;
+  return scene;
+}
+
+// The same scene twice: as it is prepared, and with all voids said to hold something.
+struct Pair {
+  PreparedScene fast, thorough;
+  std::vector<std::vector<VoidNeighbors>> marks;
+};
+
+std::unique_ptr<Pair> prepare_both(const Scene& scene) {
+  auto geometry = std::make_shared<const SceneGeometry>(scene, EmbreeSceneOptions{});
+  SceneRounding wary = make_scene_rounding(*geometry, scene.rounding, {});
+  std::vector<std::vector<VoidNeighbors>> marks(wary.geometries.size());
+  for (std::size_t i = 0; i < marks.size(); ++i) {
+    RoundedGeometry& g = wary.geometries[i];
+    if (g.rounding == nullptr) continue;
+    const Rounding::Data& data = g.rounding->data();
+    marks[i].assign(data.arcs.size() + data.solids.size(), VoidNeighbors::inside);
+    g.neighbors = marks[i].data();
+  }
+  SceneRounding plain = make_scene_rounding(*geometry, scene.rounding, {});
+  return std::unique_ptr<Pair>(new Pair{PreparedScene(geometry, std::move(plain)),
+                                        PreparedScene(geometry, std::move(wary)),
+                                        std::move(marks)});
+}
+
+TraceRay towards_a_piece(const Heap& heap, Random& random) {
+  const Vec3d middle = Vec3d(1.5, 1.5, 1) * heap.step;
+  const Vec3d from = middle + oracle::random_direction(random) * 9.0;
+  const Vec3d at =
+      Vec3d(uniform(random, -0.6, 3.6), uniform(random, -0.6, 3.6), uniform(random, -0.5, 2.5)) *
+      heap.step;
+  TraceRay ray;
+  ray.origin = Vec3f(from);
+  ray.direction = normalize(Vec3f(at - from));
+  return ray;
+}
+
+bool agree(const std::optional<SurfaceHit>& a, const std::optional<SurfaceHit>& b) {
+  if (a.has_value() != b.has_value()) return false;
+  if (!a) return true;
+  return a->geometry == b->geometry && std::abs(a->t - b->t) <= 1e-5F * (1 + a->t) &&
+         dot(a->geometric_normal, b->geometric_normal) > 0.99999F;
+}
+
+class VoidNeighborsOf : public ::testing::TestWithParam<Heap> {};
+
+TEST_P(VoidNeighborsOf, rays_agree_with_those_traced_through_the_void) {
+  const Heap& heap = GetParam();
+  Random random(7);
+  int rays = 0, from_edges = 0, wrong = 0, skipped = 0;
+  for (std::uint64_t seed = 0; seed < 6; ++seed) {
+    const auto scenes = prepare_both(make_heap(heap, seed));
+    for (int i = 0; i < 24000; ++i) {
+      TraceRay ray = towards_a_piece(heap, random);
+      for (int bounce = 0; bounce < 4; ++bounce) {
+        ++rays;
+        const auto fast = scenes->fast.intersect(ray), thorough = scenes->thorough.intersect(ray);
+        wrong += agree(fast, thorough) ? 0 : 1;
+        TraceRay shadow = ray;
+        shadow.t_max = 1.5F;
+        wrong +=
+            scenes->fast.transmittance(shadow) == scenes->thorough.transmittance(shadow) ? 0 : 1;
+        if (!fast) break;
+        from_edges += fast->feature != Feature::face ? 1 : 0;
+        skipped += fast->crossed != kNone ? 1 : 0;
+        Vec3f direction(oracle::random_direction(random));
+        if (dot(direction, fast->geometric_normal) < 0) direction = -direction;
+        ray = leave_surface(*fast, direction);
+      }
+    }
+  }
+  EXPECT_GT(from_edges, 10000);
+  EXPECT_GT(skipped, from_edges / 2);
+  // Rays that graze a face or an edge may meet it or not, by a rounding error of its float coordinates.
+  EXPECT_LE(wrong, rays / 10000) << rays;
+}
+
+std::string heap_name(const ::testing::TestParamInfo<Heap>& info) {
+  return info.param.name;
+}
+
+INSTANTIATE_TEST_SUITE_P(Heaps, VoidNeighborsOf,
+                         ::testing::Values(Heap{"apart", 1.9, 0.1, true},
+                                           Heap{"near", 1.001, 0.0005, false},
+                                           Heap{"touching", 1, 0, false},
+                                           Heap{"overlapping", 0.93, 0.05, false},
+                                           Heap{"turned", 1.05, 0.1, true}),
+                         heap_name);
+
+}  // namespace
+}  // namespace arris::test
