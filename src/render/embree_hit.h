@@ -69,16 +69,28 @@ inline Vec2f interpolated_uv(const GeometryRecord& record, const Triangle& indic
   return {w * a.x + u * b.x + v * c.x, w * a.y + u * b.y + v * c.y};
 }
 
-// Written in place: a hit is a hundred bytes, on the hottest path.
-inline void fill_hit(const SceneGeometry& geometry, const TraceRay& ray, const RTCRayHit& query,
-                     SurfaceHit& hit) {
+// What a hit tells besides where the surface is; returns its record.
+inline const GeometryRecord& fill_owner(const SceneGeometry& geometry, const RTCRayHit& query,
+                                        SurfaceHit& hit) {
   hit.geometry = geometry_of(query.hit);
   const GeometryRecord& record = geometry.embree.records()[hit.geometry];
-  hit.t = query.ray.tfar;
   hit.position_error = record.position_error;
   hit.triangle = query.hit.primID;
   hit.u = query.hit.u;
   hit.v = query.hit.v;
+  if (record.uvs != nullptr) {
+    hit.uv = interpolated_uv(record, record.triangles[hit.triangle], hit.u, hit.v);
+  }
+  hit.material = material_of(record, hit.triangle);
+  hit.object = record.object;
+  return record;
+}
+
+// Written in place: a hit is a hundred bytes, on the hottest path.
+inline void fill_hit(const SceneGeometry& geometry, const TraceRay& ray, const RTCRayHit& query,
+                     SurfaceHit& hit) {
+  const GeometryRecord& record = fill_owner(geometry, query, hit);
+  hit.t = query.ray.tfar;
   const Triangle& indices = record.triangles[hit.triangle];
   const WorldTriangle world = world_triangle(geometry.scene, record, hit.triangle);
   hit.position = (1 - hit.u - hit.v) * world.p0 + hit.u * world.p1 + hit.v * world.p2;
@@ -86,11 +98,6 @@ inline void fill_hit(const SceneGeometry& geometry, const TraceRay& ray, const R
   hit.shading_normal = record.normals == nullptr ? hit.geometric_normal
                                                  : interpolated_normal(record, indices, hit.u,
                                                                        hit.v, hit.geometric_normal);
-  if (record.uvs != nullptr) {
-    hit.uv = interpolated_uv(record, indices, hit.u, hit.v);
-  }
-  hit.material = material_of(record, hit.triangle);
-  hit.object = record.object;
   hit.side = dot(ray.direction, hit.geometric_normal) < 0 ? Side::outside : Side::inside;
 }
 

@@ -236,7 +236,8 @@ SurfaceHit RoundedTrace::finish(const Found& found) const {
 }
 
 SurfaceHit RoundedTrace::move_hit(const RTCRayHit& query, const Verdict& verdict) const {
-  SurfaceHit hit = make_surface_hit(geometry_, ray_, query);
+  SurfaceHit hit;
+  fill_owner(geometry_, query, hit);
   hit.t = float(verdict.hit.t);
   hit.position = Vec3f(Vec3d(ray_.origin) + Vec3d(ray_.direction) * verdict.hit.t);
   hit.geometric_normal = Vec3f(verdict.hit.normal);

@@ -123,14 +123,26 @@ inline FilterContext make_filter_context(const SceneGeometry& geometry,
   return context;
 }
 
+// Then the ray is judged where it enters the solid: to see it leave tells no more.
+inline bool comes_from_outside(const RoundedGeometry& g, std::uint32_t solid_index,
+                               const TraceRay& ray) {
+  if (solid_index == kNone) return false;
+  const Rounding::Data& data = g.rounding->data();
+  const Solid& solid = data.solids[solid_index];
+  if (!solid.exact) return false;
+  const Vec3d start = Vec3d(ray.origin) + Vec3d(ray.direction) * double(ray.t_min);
+  return !is_in_solid(data, solid, start - solid.center);
+}
+
 // The ray passes the sharp hit, or meets what it moved to only beyond its end.
 inline bool is_rounded_away(FilterContext& context, const RTCHit& hit, float t) {
   const std::uint32_t geometry = geometry_of(hit);
   const RoundedGeometry& g = context.rounding->geometries[geometry];
-  if (geometry == context.own_geometry &&
-      dot(Vec3f(hit.Ng_x, hit.Ng_y, hit.Ng_z), context.ray->direction) > 0 &&
-      g.rounding->solid_of(hit.primID) == context.own_solid) {
-    return true;
+  const bool leaves = dot(Vec3f(hit.Ng_x, hit.Ng_y, hit.Ng_z), context.ray->direction) > 0;
+  if (leaves && g.rounding != nullptr && g.frame == nullptr && !g.any_turned) {
+    const std::uint32_t solid = g.rounding->solid_of(hit.primID);
+    if (geometry == context.own_geometry && solid == context.own_solid) return true;
+    if (comes_from_outside(g, solid, *context.ray)) return true;
   }
   if (is_plainly_kept(g, *context.ray, hit)) {
     context.last.outcome = Resolution::Outcome::kept;

@@ -41,13 +41,6 @@ FaceHit locate(const Rounding::Data& data, const Ray& ray, const MeshHit& hit) {
   return at;
 }
 
-bool is_in_solid(const Rounding::Data& data, const Solid& solid, Vec3d x) {
-  for (std::uint32_t f = solid.first_face; f < solid.first_face + solid.face_count; ++f) {
-    if (dot(Vec3d(data.faces[f].normal), x) > data.faces[f].d) return false;
-  }
-  return true;
-}
-
 // Is x in the exact solid P but not in opening(P)? Where the nearest point of E lies on a face of E, x is within r of
 // it, being inside P; else it is the nearest arc or node that counts.
 bool is_in_void(const Rounding::Data& data, const Solid& solid, Vec3d x) {

@@ -105,6 +105,15 @@ inline bool is_kept_by_bands(const std::uint32_t* band_begin, const Band* bands,
   return true;
 }
 
+// Whether x, relative to its centre, lies in a convex solid with all its faces.
+inline bool is_in_solid(const Rounding::Data& data, const Solid& solid, Vec3d x) {
+  const Face* const last = data.faces.data() + solid.first_face + solid.face_count;
+  for (const Face* f = data.faces.data() + solid.first_face; f != last; ++f) {
+    if (dot(Vec3d(f->normal), x) > f->d) return false;
+  }
+  return true;
+}
+
 // Between faces of the given normals. The direction is theirs: that of p1 − p0 is noise where they are near.
 inline ArcLine make_arc_line(Vec3d p0, Vec3d p1, Vec3d normal_a, Vec3d normal_b) {
   const Vec3d axis = normalize(cross(normal_a, normal_b));

@@ -71,7 +71,7 @@ struct Root {
 };
 
 // Entry into the ball or cylinder of radius r: |offset + s·direction| = r with both already projected.
-Root find_entry(Vec3d offset, Vec3d direction, double r) {
+inline Root find_entry(Vec3d offset, Vec3d direction, double r) {
   const double b = dot(offset, direction);
   const double c = length_squared(offset) - r * r;
   if (c <= 0) return {true, false, 0};
@@ -323,7 +323,7 @@ ShortWalk walk_short(const Rounding::Data& data, std::uint32_t arc, Vec3d x, Vec
   if (root.distance == kInfinity || root.inside) return {};
   const double end = along + speed * root.distance;
   if (end < 0 || end > double(line.length)) return {};
-  const Vec3d normal = (offset + across * root.distance) / data.radius;
+  const Vec3d normal = (offset + across * root.distance) * (1 / data.radius);
   return {true, WalkHit{root.distance, normal, Feature::edge, arc}};
 }
 
