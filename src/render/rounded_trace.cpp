@@ -184,7 +184,9 @@ std::optional<float> RoundedTrace::way_past(const RoundedGeometry& g, const Cand
 std::optional<SurfaceHit> RoundedTrace::trace_from_void() const {
   const std::optional<Found> found = trace_filtered(ray_, nullptr);
   if (!found) return std::nullopt;
-  return finish(*found);
+  SurfaceHit hit = finish(*found);
+  hit.rounding_seen = hit.feature != Feature::face;  // as if traced from beyond the void
+  return hit;
 }
 
 std::optional<SurfaceHit> RoundedTrace::moved(const RTCRayHit& query,
