@@ -13,6 +13,7 @@
 #include "io/picture_exr.h"
 #include "io/picture_hdr.h"
 #include "io/picture_jpeg.h"
+#include "io/picture_limits.h"
 #include "io/picture_pfm.h"
 #include "io/picture_png.h"
 
@@ -119,8 +120,21 @@ PictureFormat picture_format(const std::filesystem::path& path) {
                                               extension));
 }
 
+std::string problem_with_size(PictureFormat format, int width_px, int height_px) {
+  const int most = format == PictureFormat::jpeg ? kMaxJpegSide : int(kMaxPictureSide);
+  if (width_px >= 1 && height_px >= 1 && width_px <= most && height_px <= most) return "";
+  const std::string size = fmt::format("{} x {} pixels", width_px, height_px);
+  if (format == PictureFormat::jpeg && width_px >= 1 && height_px >= 1) {
+    return fmt::format("{} are too many for JPEG; use at most {} on a side, or .png", size, most);
+  }
+  return fmt::format("{} are no picture; use 1 to {} on a side", size, most);
+}
+
 std::vector<std::uint8_t> encode_picture(const Picture& picture, PictureFormat format,
                                          const SaveOptions& options) {
+  const std::string problem =
+      problem_with_size(format, picture.color.width_px, picture.color.height_px);
+  if (!problem.empty()) throw Error(Error::Kind::input, "", problem);
   switch (format) {
     case PictureFormat::png:
       return encode_png(display_samples(picture.color, options));

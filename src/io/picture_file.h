@@ -30,7 +30,10 @@ enum class PictureFormat { png, jpeg, exr, pfm };
 // By extension; throws Error (kind input) for any other, naming those that are known.
 PictureFormat picture_format(const std::filesystem::path& path);
 
-// Layers are part of EXR only.
+// Empty if the format takes pictures of this size; else what is wrong and what to do.
+std::string problem_with_size(PictureFormat format, int width_px, int height_px);
+
+// Layers are part of EXR only. Throws Error (kind input) for a size that the format does not take.
 std::vector<std::uint8_t> encode_picture(const Picture& picture, PictureFormat format,
                                          const SaveOptions& options = {});
 
