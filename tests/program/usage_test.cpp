@@ -167,6 +167,28 @@ TEST(Usage, a_full_disk_is_a_failure) {
   EXPECT_THAT(run.err, HasSubstr("stdout: can't be written"));
 }
 
+TEST(Usage, messages_that_can_not_be_printed_change_nothing_else) {
+  const Workplace place;
+  const std::string render = "arris render cube.stl --size 8x8 --spp 1 ";
+  ASSERT_EQ(place.shell(render + "-o a.png").code, 0);
+  for (const char* nowhere : {"2>/dev/full", "2>&-", "<&- 2>&-", "2>&1 >/dev/full | true"}) {
+    ASSERT_EQ(place.shell(render + "-o b.png " + nowhere).code, 0) << nowhere;
+    EXPECT_TRUE(place.read("b.png") == place.read("a.png")) << nowhere;
+    if (std::string_view(nowhere).ends_with("true")) continue;
+    EXPECT_EQ(place.shell("arris render none.stl -o c.png " + std::string(nowhere)).code, 2);
+  }
+}
+
+TEST(Usage, results_that_can_not_be_printed_are_a_failure) {
+  const Workplace place;
+  for (const char* nowhere : {">/dev/full", ">&-"}) {
+    for (const char* command : {"info cube.stl", "--help", "render cube.stl --material list"}) {
+      const Outcome run = place.shell(std::string("arris ") + command + nowhere);
+      EXPECT_EQ(run.code, 1) << command << nowhere;
+    }
+  }
+}
+
 TEST(Usage, quiet_is_silent) {
   const Outcome run = Workplace().arris("render cube.stl --size 8x8 --spp 1 -o a.png --quiet");
   EXPECT_EQ(run.code, 0);
