@@ -122,13 +122,13 @@ int run_render(const Arguments& arguments) {
   const StagingReport staging = apply_request(loaded, request, arguments);
   stats.load_seconds = load.seconds();
 
-  const auto prepared = prepare_scene(std::move(loaded), {.threads = request.threads});
+  const auto prepared =
+      prepare_scene(std::move(loaded), {.threads = request.threads, .stop = &stop});
   const Scene& scene = scene_of(*prepared);
   stats.prepare = prepare_stats(*prepared);
   stats.prepare.triangles -= staging.ground_triangles;
   stats.prepare.objects -= staging.ground_triangles > 0 ? 1 : 0;
   report_scene(console, scene, stats.prepare);
-  if (stop) throw Error(Error::Kind::failed, "", "stopped before the first sample");
 
   RenderJob job = make_job(request, scene);
   job.options.stop = &stop;

@@ -14,16 +14,10 @@
 namespace arris {
 namespace {
 
-void throw_if_invalid(const Scene& scene) {
-  const std::vector<std::string> problems = validate_scene(scene);
-  if (problems.empty()) {
-    return;
+void end_if_stopped(const PrepareOptions& options) {
+  if (options.stop != nullptr && *options.stop) {
+    throw Error(Error::Kind::failed, "", "stopped before the first sample");
   }
-  std::string text;
-  for (const std::string& problem : problems) {
-    text += (text.empty() ? "" : "\n") + problem;
-  }
-  throw Error(Error::Kind::input, "", text);
 }
 
 // The bevel shader rounds nothing: a note says what it does.
@@ -80,25 +74,41 @@ const Scene& PreparedScene::scene() const {
   return geometry_->scene;
 }
 
+void check_scene(const Scene& scene, const std::string& where) {
+  const std::vector<std::string> problems = validate_scene(scene);
+  if (problems.empty()) {
+    return;
+  }
+  std::string text = problems[0];
+  for (std::size_t i = 1; i < problems.size(); ++i) {
+    text += fmt::format("\n{}{}{}", where, where.empty() ? "" : ": ", problems[i]);
+  }
+  throw Error(Error::Kind::input, where, text);
+}
+
 std::shared_ptr<const PreparedScene> prepare_scene(Scene scene, const PrepareOptions& options) {
   const auto start = std::chrono::steady_clock::now();
-  throw_if_invalid(scene);
+  check_scene(scene, "");
   if (!scene.camera) {
     scene.camera = frame_scene(scene);
   }
   if (!scene.environment) {
     scene.environment = StudioEnvironment{.strength = 1, .up = scene.up};
   }
+  end_if_stopped(options);
   MeshedBevels meshed = mesh_bevels(scene, scene.rounding, options.threads);
+  end_if_stopped(options);
   auto geometry = std::make_shared<SceneGeometry>(std::move(scene),
                                                   EmbreeSceneOptions{.threads = options.threads});
   geometry->build_seconds =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count() -
       meshed.seconds;
   geometry->meshed = std::move(meshed);
+  end_if_stopped(options);
   SceneRounding rounding = make_scene_rounding(*geometry, geometry->scene.rounding,
                                                {options.threads, options.detection});
   rounding.shaders = make_bevel_shaders(*geometry, geometry->scene.rounding);
+  end_if_stopped(options);
   return std::make_shared<const PreparedScene>(std::move(geometry), std::move(rounding));
 }
 
