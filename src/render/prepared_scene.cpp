@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <chrono>
 #include <string>
 
@@ -10,6 +11,7 @@
 #include "render/camera.h"
 #include "render/meshed_bevels.h"
 #include "render/scene_geometry.h"
+#include "scene/scene_bounds.h"
 
 namespace arris {
 namespace {
@@ -18,6 +20,21 @@ void end_if_stopped(const PrepareOptions& options) {
   if (options.stop != nullptr && *options.stop) {
     throw Error(Error::Kind::failed, "", "stopped before the first sample");
   }
+}
+
+void note_vanished_triangles(Scene& scene) {
+  std::uint64_t triangles = 0, drawn = 0;
+  for (const Object& object : scene.objects) {
+    triangles += scene.meshes[object.mesh.index].triangles.size();
+    drawn += count_drawn_triangles(scene, object);
+  }
+  if (drawn == triangles) return;
+  const std::string note =
+      triangles - drawn == 1
+          ? "1 triangle has no area and is not drawn"
+          : fmt::format("{} triangles have no area and are not drawn", triangles - drawn);
+  // A scene that is prepared again says it already.
+  if (std::ranges::find(scene.notes, note) == scene.notes.end()) scene.notes.push_back(note);
 }
 
 // The bevel shader rounds nothing: a note says what it does.
@@ -89,6 +106,7 @@ void check_scene(const Scene& scene, const std::string& where) {
 std::shared_ptr<const PreparedScene> prepare_scene(Scene scene, const PrepareOptions& options) {
   const auto start = std::chrono::steady_clock::now();
   check_scene(scene, "");
+  note_vanished_triangles(scene);
   if (!scene.camera) {
     scene.camera = frame_scene(scene);
   }
