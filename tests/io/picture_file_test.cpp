@@ -273,6 +273,16 @@ TEST(PictureFile, says_what_is_wrong_in_the_header) {
   EXPECT_THAT(error_of(bytes_of("#?RGBE\n\n+X 8 -Y 8\n")), HasSubstr("use -Y height +X width"));
 }
 
+TEST(PictureFile, what_is_wrong_with_an_exr_is_said_to_its_end) {
+  Bytes bytes = encode_picture(small_picture(), PictureFormat::exr);
+  const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+  // The type of the attribute, so that OpenEXR reads another one than it expects.
+  bytes[text.find("displayWindow") + 14] = 'x';
+  EXPECT_EQ(error_of(bytes),
+            "in: is a corrupt or incomplete EXR: Unexpected type for image attribute "
+            "\"displayWindow\"");
+}
+
 TEST(PictureFile, a_size_that_the_format_does_not_take_is_refused) {
   const auto refusal = [](PictureFormat format, int width, int height) {
     try {
