@@ -84,6 +84,20 @@ void check_argument_count(const CommandRow& command, const std::vector<std::stri
   }
 }
 
+// CLI11 would take "--quiet=false" for --quiet.
+void check_flags(const CommandRow& command, const std::vector<std::string>& words) {
+  for (const std::string& word : words) {
+    if (word == "--") return;
+    const std::size_t equals = word.find('=');
+    if (equals == std::string::npos) continue;
+    for (const OptionRow* row : rows_of(command)) {
+      if (row->value.empty() && word.substr(0, equals) == row->name) {
+        fail(fmt::format("{} takes no value", row->name));
+      }
+    }
+  }
+}
+
 std::string wrap(const std::string& text, std::size_t indent, std::size_t width) {
   std::string out;
   std::size_t column = indent;
@@ -137,6 +151,7 @@ const CommandRow& find_command(const std::string& name) {
 }
 
 Arguments parse_arguments(const CommandRow& command, const std::vector<std::string>& words) {
+  check_flags(command, words);
   CLI::App app;
   app.set_help_flag();
   app.allow_extras();
@@ -155,13 +170,21 @@ Arguments parse_arguments(const CommandRow& command, const std::vector<std::stri
   } catch (const CLI::ParseError& error) {
     fail_parse(command, error);
   }
+  bool options_end = false;  // at "--"
   for (const std::string& word : app.remaining()) {
-    if (word.size() > 1 && word[0] == '-') fail_unknown_option(command, word);
+    if (!options_end && word == "--") {
+      options_end = true;
+      continue;
+    }
+    if (!options_end && word.size() > 1 && word[0] == '-') fail_unknown_option(command, word);
     arguments.positionals.push_back(word);
   }
   for (const auto& [name, option] : given) {
     if (option->count() == 0) continue;
     arguments.options[name] = values.contains(name) ? values[name] : "true";
+  }
+  if (arguments.has("--quiet") && arguments.has("--verbose")) {
+    fail("--quiet and --verbose contradict each other; use one of them");
   }
   if (!arguments.has("--help")) check_argument_count(command, arguments.positionals);
   return arguments;

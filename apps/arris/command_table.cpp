@@ -43,7 +43,9 @@ CommandRow render_row() {
       "a studio, its "
       "edges rounded. A scene file (.toml) is rendered as it says. Ctrl-C ends the render early "
       "and keeps "
-      "the picture of the samples made so far (exit code 1); a second Ctrl-C ends the program.",
+      "the picture of the samples made so far, if there are any (exit code 1); a second Ctrl-C "
+      "ends "
+      "the program.",
       {{"Output",
         {{"-o,--output", "FILE",
           "the picture: .png .jpg (tone-mapped), .exr .pfm (linear); - writes PNG to stdout"},
@@ -56,7 +58,8 @@ CommandRow render_row() {
        {"Picture",
         {{"--size", "WxH", "in pixels (default: the scene's, else 1280x720)"},
          {"--spp", "N", "samples per pixel (default: the scene's, else 64)"},
-         {"--time", "SECONDS", "end after this time, with the samples made until then"},
+         {"--time", "SECONDS",
+          "end after this time, with the samples made until then, at least one"},
          {"--max-depth", "N", "bounces of light (default: the scene's, else 8)"},
          {"--seed", "N", "another pattern of noise (default: 0)"},
          {"--samples", "A..B",

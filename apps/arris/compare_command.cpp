@@ -8,16 +8,14 @@
 #include "arris/commands.h"
 #include "arris/error.h"
 #include "arris/io.h"
+#include "arris/output_files.h"
 #include "arris/values.h"
 #include "image/compare.h"
 #include "image/srgb.h"
+#include "io/picture_file.h"
 
 namespace arris::program {
 namespace {
-
-bool is_linear_file(const std::string& path) {
-  return path.ends_with(".exr") || path.ends_with(".pfm") || path.ends_with(".hdr");
-}
 
 // As a screen shows it, in linear values.
 Image shown(const Image& image) {
@@ -53,6 +51,19 @@ void print_json(const ImageDifference& d) {
   fmt::print("{}\n", json.dump());
 }
 
+void check_diff(const std::string& path, const std::string& a, const std::string& b) {
+  picture_format(path);
+  const NamedFile output{"--diff", path};
+  const NamedFile inputs[] = {{"A", a}, {"B", b}};
+  check_outputs({&output, 1}, inputs);
+}
+
+void save_diff(const std::string& path, const Image& a, const Image& b) {
+  SaveOptions options;
+  options.tone_map = false;
+  save_picture({flip_colors(flip_map(a, b)), {}}, path, options);
+}
+
 }  // namespace
 
 int run_compare(const Arguments& arguments) {
@@ -60,21 +71,21 @@ int run_compare(const Arguments& arguments) {
   const std::string& path_b = arguments.positionals[1];
   const auto max_rmse = find_given(arguments, "--max-rmse");
   const double limit = max_rmse ? parse_real(*max_rmse, {0, 1e30}) : 0;
-  Image a = load_picture(path_a).color, b = load_picture(path_b).color;
-  const bool linear = is_linear_file(path_a) && is_linear_file(path_b);
-  if (!linear && is_linear_file(path_a)) a = shown(a);
-  if (!linear && is_linear_file(path_b)) b = shown(b);
-  const ImageDifference difference =
-      compare_images(a, b, linear ? ValueEncoding::linear : ValueEncoding::srgb);
+  const auto diff = arguments.find("--diff");
+  if (diff) check_diff(*diff, path_a, path_b);
+  const PictureFile file_a = load_picture_file(path_a), file_b = load_picture_file(path_b);
+  const ValueEncoding encoding =
+      file_a.encoding == file_b.encoding ? file_a.encoding : ValueEncoding::srgb;
+  const auto image = [&](const PictureFile& file) {
+    return file.encoding == encoding ? file.picture.color : shown(file.picture.color);
+  };
+  const Image a = image(file_a), b = image(file_b);
+  const ImageDifference difference = compare_images(a, b, encoding);
+  if (diff) save_diff(*diff, a, b);
   if (arguments.has("--json")) {
     print_json(difference);
   } else {
     print_difference(difference);
-  }
-  if (const auto path = arguments.find("--diff")) {
-    SaveOptions options;
-    options.tone_map = false;
-    save_picture({flip_colors(flip_map(a, b)), {}}, *path, options);
   }
   const bool passes = difference.rmse <= limit && difference.nonfinite_pixels == 0;
   return max_rmse && !passes ? 1 : 0;

@@ -27,7 +27,7 @@ Console::Console(const Arguments& arguments)
 void Console::report(const std::string& line) {
   if (level_ == Level::quiet) return;
   end_progress();
-  fmt::print(stderr, "{}\n", line);
+  print_message(line + "\n");
 }
 
 void Console::detail(const std::string& line) {
@@ -40,20 +40,24 @@ void Console::show_progress(const Progress& progress) {
   const double left = done > 0 ? progress.elapsed_seconds * (1 - done) / done : 0;
   if (is_terminal_) {
     const int filled = int(done * kBarWidth);
-    fmt::print(stderr, "\r[{:=>{}}{:>{}}] {:3.0f}%  {} left\x1b[K", "", filled, "",
-               kBarWidth - filled, 100 * done, format_duration(left));
-    std::fflush(stderr);
+    print_message(fmt::format("\r[{:=>{}}{:>{}}] {:3.0f}%  {} left\x1b[K", "", filled, "",
+                              kBarWidth - filled, 100 * done, format_duration(left)));
     bar_shown_ = true;
   } else if (progress.elapsed_seconds >= next_line_seconds_) {
-    fmt::print(stderr, "{:.0f}% done, {} left\n", 100 * done, format_duration(left));
+    print_message(fmt::format("{:.0f}% done, {} left\n", 100 * done, format_duration(left)));
     next_line_seconds_ = progress.elapsed_seconds + kLineSeconds;
   }
 }
 
 void Console::end_progress() {
   if (!bar_shown_) return;
-  fmt::print(stderr, "\r\x1b[K");
+  print_message("\r\x1b[K");
   bar_shown_ = false;
+}
+
+void print_message(const std::string& text) {
+  (void)std::fwrite(text.data(), 1, text.size(), stderr);
+  (void)std::fflush(stderr);
 }
 
 std::string format_duration(double seconds) {

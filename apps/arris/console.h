@@ -29,6 +29,9 @@ class Console {
   double next_line_seconds_ = 0;
 };
 
+// Writes to stderr. What can't be written is lost, and changes nothing else.
+void print_message(const std::string& text);
+
 // "12 s", "3 min 20 s", "2 h 5 min".
 std::string format_duration(double seconds);
 

@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <filesystem>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
@@ -13,6 +12,7 @@
 #include "arris/io.h"
 #include "arris/render.h"
 #include "arris/values.h"
+#include "io/file_kind.h"
 
 namespace arris::program {
 namespace {
@@ -82,7 +82,8 @@ void print_object(const ObjectReport& object, const RoundingSummary* rounding) {
   fmt::print("  triangles   {} on {} vertices, in {} {}\n", object.triangles, object.vertices,
              object.shells, object.shells == 1 ? "piece" : "pieces");
   if (object.degenerate_triangles > 0) {
-    fmt::print("  degenerate  {} triangles without area\n", object.degenerate_triangles);
+    fmt::print("  degenerate  {} {} without area\n", object.degenerate_triangles,
+               object.degenerate_triangles == 1 ? "triangle" : "triangles");
   }
   fmt::print("  edges       {} convex, {} concave, {} smooth, {} flat", e.convex, e.concave,
              e.smooth, e.flat);
@@ -104,7 +105,8 @@ void print_object(const ObjectReport& object, const RoundingSummary* rounding) {
 
 void print_report(const Findings& findings, const std::string& input) {
   const SceneReport& scene = findings.scene;
-  fmt::print("{}: {} triangles in {} {}\n", input, scene.triangles, scene.objects.size(),
+  fmt::print("{}: {} {} in {} {}\n", input, scene.triangles,
+             scene.triangles == 1 ? "triangle" : "triangles", scene.objects.size(),
              scene.objects.size() == 1 ? "object" : "objects");
   fmt::print("size {}\n", format_bounds(scene.bounds_min, scene.bounds_max));
   for (std::size_t i = 0; i < scene.objects.size(); ++i) {
@@ -119,10 +121,10 @@ int run_info(const Arguments& arguments) {
   const int threads = threads_of(arguments);
   with_rounding_options({}, arguments);  // bad values before long loading
   Scene scene = load_scene(input);
+  check_scene(scene, input);
   Console console(arguments);
-  for (const std::string& note : scene.notes) console.report(note);
   // As render does: bare models are rounded, scene files say what they want.
-  if (!scene.rounding && std::filesystem::path(input).extension() != ".toml") {
+  if (!scene.rounding && !is_scene_file(input)) {
     RoundingSettings automatic;
     automatic.method = RoundMethod::exact;
     scene.rounding = automatic;
@@ -130,7 +132,9 @@ int run_info(const Arguments& arguments) {
   apply_rounding_options(scene, arguments);
   Findings findings;
   findings.scene = inspect_scene(scene, scene.rounding.value_or(RoundingSettings{}).min_angle);
-  findings.prepare = prepare_stats(*prepare_scene(std::move(scene), {.threads = threads}));
+  const auto prepared = prepare_scene(std::move(scene), {.threads = threads});
+  for (const std::string& note : scene_of(*prepared).notes) console.report(note);
+  findings.prepare = prepare_stats(*prepared);
   if (arguments.has("--json")) {
     print_json(findings);
   } else {

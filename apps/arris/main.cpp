@@ -1,6 +1,9 @@
 // main.cpp — from words to a command, from errors to exit codes: 0 done, 1 failed, 2 bad usage or input
+#include <fcntl.h>
 #include <fmt/format.h>
+#include <unistd.h>
 
+#include <csignal>
 #include <cstdio>
 #include <exception>
 #include <new>
@@ -9,6 +12,7 @@
 
 #include "arris/command_line.h"
 #include "arris/commands.h"
+#include "arris/console.h"
 #include "arris/error.h"
 #include "arris/version.h"
 
@@ -30,12 +34,22 @@ void print_error(const std::string& text) {
     line += c;
     if (c == '\n') line += "arris: ";
   }
-  fmt::print(stderr, "{}\n", line);
+  print_message(line + "\n");
+}
+
+// A stream that the caller has closed would be the next file that is opened, a picture perhaps, and get what
+// is meant for the stream. What is read from or written to the stand-in fails.
+void open_standard_streams() {
+  for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
+    if (::fcntl(stream, F_GETFD) != -1) continue;
+    const int stand_in = ::open("/dev/null", stream == STDIN_FILENO ? O_WRONLY : O_RDONLY);
+    if (stand_in >= 0 && stand_in != stream) ::close(stand_in);
+  }
 }
 
 int run(const std::vector<std::string>& words) {
   if (words.empty()) {
-    fmt::print(stderr, "{}", help_text());
+    print_message(help_text());
     return kBadInput;
   }
   if (words[0] == "--help" || words[0] == "-h") return print_text(help_text());
@@ -55,6 +69,9 @@ int run(const std::vector<std::string>& words) {
 int main(int argc, char** argv) {
   using arris::Error;
   using namespace arris::program;  // NOLINT(google-build-using-namespace): main can't be in it
+  // A reader that has gone is a failed write like any other; on stderr it is none of our business.
+  std::signal(SIGPIPE, SIG_IGN);
+  open_standard_streams();
   try {
     return run({argv + 1, argv + argc});
   } catch (const Error& error) {

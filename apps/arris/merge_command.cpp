@@ -9,6 +9,7 @@
 #include "arris/console.h"
 #include "arris/error.h"
 #include "arris/io.h"
+#include "arris/output_files.h"
 #include "arris/values.h"
 #include "image/picture_sum.h"
 #include "io/picture_file.h"
@@ -42,6 +43,8 @@ int run_merge(const Arguments& arguments) {
   if (!output)
     throw Error(Error::Kind::input, "", "arris merge needs an output file: -o whole.exr");
   picture_format(*output);
+  const NamedFile target{"-o", *output};  // may be one of the parts: they are read first
+  check_outputs({&target, 1}, {});
   SaveOptions options;
   if (const auto given = find_given(arguments, "--exposure")) {
     options.exposure = parse_real(*given, {-32, 32});

@@ -85,8 +85,9 @@ RenderJob make_job(const RenderRequest& request, const Scene& scene) {
 void report_scene(Console& console, const Scene& scene, const PrepareStats& stats) {
   for (const std::string& note : scene.notes) console.report(note);
   report_rounding(console, scene, stats);
-  console.detail(fmt::format("{} triangles in {} objects, prepared in {}", stats.triangles,
-                             stats.objects,
+  console.detail(fmt::format("{} {} in {} {}, prepared in {}", stats.triangles,
+                             stats.triangles == 1 ? "triangle" : "triangles", stats.objects,
+                             stats.objects == 1 ? "object" : "objects",
                              format_duration(stats.build_seconds + stats.round_seconds)));
   const Camera& camera = *scene.camera;
   console.detail(
@@ -119,16 +120,17 @@ int run_render(const Arguments& arguments) {
 
   const Stopwatch load;
   Scene loaded = load_scene(request.input);
+  check_scene(loaded, request.input.string());  // before staging adds what is not the file's
   const StagingReport staging = apply_request(loaded, request, arguments);
   stats.load_seconds = load.seconds();
 
-  const auto prepared = prepare_scene(std::move(loaded), {.threads = request.threads});
+  const auto prepared =
+      prepare_scene(std::move(loaded), {.threads = request.threads, .stop = &stop});
   const Scene& scene = scene_of(*prepared);
   stats.prepare = prepare_stats(*prepared);
   stats.prepare.triangles -= staging.ground_triangles;
   stats.prepare.objects -= staging.ground_triangles > 0 ? 1 : 0;
   report_scene(console, scene, stats.prepare);
-  if (stop) throw Error(Error::Kind::failed, "", "stopped before the first sample");
 
   RenderJob job = make_job(request, scene);
   job.options.stop = &stop;

@@ -67,6 +67,9 @@ class Job {
     }
     if (job_.checkpoint && unsaved_) save_checkpoint();
     if (last_.samples > 0) add_picture(sum_, last_.picture, last_.samples);
+    if (sum_.samples == 0) {
+      throw Error(Error::Kind::failed, "", "stopped before the first sample");
+    }
     result.picture = mean_picture(sum_);
     result.part = job_.part;
     result.part.samples = {{wanted.first, wanted.first + std::uint32_t(sum_.samples)}};
@@ -87,6 +90,7 @@ class Job {
   bool render_chunk(JobResult& result) {
     RenderOptions options = job_.options;
     options.samples = {position_, std::min(options.samples.last, position_ + kChunkSamples)};
+    options.least_samples = sum_.samples == 0 ? 1 : 0;
     if (options.time_limit_seconds > 0) {
       constexpr double kLeast = 1e-3;  // 0 means no limit
       options.time_limit_seconds =

@@ -1,7 +1,7 @@
 // render_job.h — a render in chunks, with a time limit and a checkpoint
 // What       run_job() renders the samples in chunks of kChunkSamples, whatever the options, and adds them up. A
 //            checkpoint holds the sum of whole chunks, so that going on from it gives the same bits.
-// Errors     kind input: a checkpoint of another render
+// Errors     kind input: a checkpoint of another render; kind failed: stopped before the first sample
 #pragma once
 
 #include <atomic>

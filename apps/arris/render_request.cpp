@@ -6,31 +6,16 @@
 #include <algorithm>
 
 #include "arris/error.h"
+#include "arris/output_files.h"
 #include "arris/values.h"
 #include "base/nearest_name.h"
+#include "io/file_kind.h"
 #include "io/picture_file.h"
+#include "scene/limits.h"
 #include "scene/material_presets.h"
 
 namespace arris::program {
 namespace {
-
-constexpr std::uint32_t kMostSamples = 1U << 24U;
-
-// Late surprises after hours of rendering are the worst.
-void check_writable(const std::filesystem::path& path) {
-  const std::filesystem::path folder =
-      path.has_parent_path() ? path.parent_path() : std::filesystem::path(".");
-  const auto fail = [&](const std::string& what) {
-    throw Error(Error::Kind::failed, path.string(), what);
-  };
-  if (!std::filesystem::is_directory(folder)) {
-    fail(fmt::format("can't be written: there is no folder {}", folder.string()));
-  }
-  if (std::filesystem::is_directory(path)) fail("can't be written: it is a folder");
-  if (::access(folder.c_str(), W_OK) != 0) {
-    fail(fmt::format("can't be written: the folder {} is write-protected", folder.string()));
-  }
-}
 
 Material parse_material(const Given& given) {
   const auto material = find_material_preset(given.text);
@@ -63,7 +48,7 @@ CameraOptions make_camera_options(const Arguments& arguments) {
 StageOptions make_stage_options(const Arguments& arguments, const std::filesystem::path& input) {
   StageOptions stage;
   stage.source =
-      input.extension() == ".toml" ? StageOptions::Source::scene_file : StageOptions::Source::model;
+      is_scene_file(input) ? StageOptions::Source::scene_file : StageOptions::Source::model;
   if (const auto given = find_given(arguments, "--lighting")) {
     constexpr Lighting kLightings[] = {Lighting::studio, Lighting::sky, Lighting::white};
     stage.lighting = kLightings[parse_choice(*given, {"studio", "sky", "white"})];
@@ -132,8 +117,23 @@ std::string parse_output(const Arguments& arguments) {
     return *output;
   }
   picture_format(*output);
-  check_writable(*output);
   return *output;
+}
+
+void check_files(const RenderRequest& request) {
+  std::vector<NamedFile> outputs;
+  if (request.output != "-") {
+    outputs.push_back({"-o", request.output});
+    if (picture_format(request.output) != PictureFormat::exr) {
+      for (const std::string& aov : request.aovs) {
+        outputs.push_back({"--aov " + aov, layer_file(request.output, aov)});
+      }
+    }
+  }
+  if (request.stats && *request.stats != "-") outputs.push_back({"--stats", *request.stats});
+  if (request.checkpoint) outputs.push_back({"--checkpoint", *request.checkpoint});
+  const NamedFile input{"INPUT", request.input};
+  check_outputs(outputs, {&input, 1});
 }
 
 }  // namespace
@@ -154,7 +154,6 @@ RenderRequest make_render_request(const Arguments& arguments) {
     request.seed = std::uint32_t(parse_count(*given, 0, 0xFFFFFFFF));
   }
   if (const auto path = arguments.find("--stats")) {
-    if (*path != "-") check_writable(*path);
     if (*path == "-" && request.output == "-") {
       throw Error(Error::Kind::input, "--stats", "and -o can't both be written to stdout");
     }
@@ -164,9 +163,9 @@ RenderRequest make_render_request(const Arguments& arguments) {
     if (picture_format(*path) != PictureFormat::exr) {
       throw Error(Error::Kind::input, "--checkpoint", "needs a file that ends in .exr");
     }
-    check_writable(*path);
     request.checkpoint = *path;
   }
+  check_files(request);
   // Checked here, applied later.
   with_rounding_options({}, arguments);
   ImageSettings unused;
@@ -193,6 +192,11 @@ void apply_image_options(ImageSettings& image, const Arguments& arguments) {
 StagingReport apply_request(Scene& scene, const RenderRequest& request,
                             const Arguments& arguments) {
   apply_image_options(scene.image, arguments);
+  const PictureFormat format =
+      request.output == "-" ? PictureFormat::png : picture_format(request.output);
+  const std::string problem =
+      problem_with_size(format, scene.image.width_px, scene.image.height_px);
+  if (!problem.empty()) throw Error(Error::Kind::input, request.output, problem);
   const StagingReport report = stage_model(scene, request.stage);
   apply_rounding_options(scene, arguments);
   // The ground that staging has added stays sharp.

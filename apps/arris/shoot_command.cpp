@@ -105,10 +105,11 @@ int run_shoot(const Arguments& arguments) {
     }
   }
   Scene scene = load_scene(arguments.positionals[0]);
-  Console console(arguments);
-  for (const std::string& note : scene.notes) console.report(note);
+  check_scene(scene, arguments.positionals[0]);
   apply_rounding_options(scene, arguments);
   const auto prepared = prepare_scene(std::move(scene), {.threads = threads});
+  Console console(arguments);
+  for (const std::string& note : scene_of(*prepared).notes) console.report(note);
   if (*rays == "-") {
     shoot_lines(std::cin, "stdin", *prepared);
   } else {

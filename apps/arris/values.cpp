@@ -9,6 +9,7 @@
 #include "arris/error.h"
 #include "base/nearest_name.h"
 #include "base/utf8_text.h"
+#include "scene/limits.h"
 
 namespace arris::program {
 namespace {
@@ -137,7 +138,6 @@ SampleRange parse_samples(const Given& given) {
   const std::vector<std::string> parts = split(given.text, "..");
   const auto first = to_number<std::uint32_t>(parts[0]);
   const auto last = parts.size() == 2 ? to_number<std::uint32_t>(parts[1]) : std::nullopt;
-  constexpr std::uint32_t kMostSamples = 1U << 24U;
   if (!first || !last || *first >= *last || *last > kMostSamples) {
     fail(given,
          fmt::format("no range of samples; use FIRST..END with FIRST below END and END at most "
@@ -157,7 +157,8 @@ std::size_t parse_choice(const Given& given, const std::vector<std::string>& nam
     if (names[i] == given.text) return i;
     list += (i == 0 ? "" : ", ") + names[i];
   }
-  fail(given, fmt::format("not known{}; use one of {}", did_you_mean(given.text, names), list));
+  fail(given, fmt::format("not known; use {}{}{}", names.size() > 1 ? "one of " : "", list,
+                          did_you_mean(given.text, names)));
 }
 
 int threads_of(const Arguments& arguments) {
@@ -172,6 +173,18 @@ bool has_rounding_options(const Arguments& arguments) {
   }
   return false;
 }
+
+namespace {
+
+void check_round_method(const Arguments& arguments) {
+  const auto radius = arguments.find("--round"), method = arguments.find("--round-method");
+  if (!radius || !method || (*radius == "none") == (*method == "none")) return;
+  throw Error(
+      Error::Kind::input, "--round-method",
+      fmt::format("{} contradicts --round {}; leave one of them out", in_quotes(*method), *radius));
+}
+
+}  // namespace
 
 RoundingSettings with_rounding_options(RoundingSettings settings, const Arguments& arguments) {
   if (const auto given = find_given(arguments, "--round")) {
@@ -190,10 +203,9 @@ RoundingSettings with_rounding_options(RoundingSettings settings, const Argument
     settings.min_angle = radians(parse_real(*given, {0, 180}));
   }
   if (const auto given = find_given(arguments, "--round-method")) {
-    const bool off = arguments.find("--round") == "none";
     apply_method(settings, *given);
-    if (off) settings.method = RoundMethod::none;
   }
+  check_round_method(arguments);
   return settings;
 }
 

@@ -20,9 +20,14 @@ namespace arris {
 // Everything that is wrong with a scene, one line each; empty if nothing is.
 std::vector<std::string> validate_scene(const Scene& scene);
 
+// Throws them all as one Error of that place.
+void check_scene(const Scene& scene, const std::string& where);
+
 struct PrepareOptions {
   int threads = 0;  // 0: all
   Detection detection = Detection::face_index;
+  // Set from any thread; looked at between the steps, which ends with an Error of kind failed.
+  const std::atomic<bool>* stop = nullptr;
 };
 
 class PreparedScene;
@@ -66,11 +71,12 @@ struct Progress {
 
 struct RenderOptions {
   SampleRange samples;
-  double time_limit_seconds = 0;  // 0: none; the render ends after the sample pass under way
+  double time_limit_seconds = 0;    // 0: none
+  std::uint32_t least_samples = 1;  // made even if the time is over
   std::uint32_t seed = 0;
   int threads = 0;                // 0: all
   std::vector<std::string> aovs;  // albedo normal depth object rounded
-  // Set from any thread; the render ends after the pass under way.
+  // Set from any thread; the render ends within a second, perhaps without any sample.
   const std::atomic<bool>* stop = nullptr;
   std::function<void(const Progress&)> on_progress;  // from one thread at a time
 };
@@ -82,7 +88,7 @@ struct RayCounts {
 };
 
 struct RenderResult {
-  Picture picture;
+  Picture picture;      // 0 x 0 pixels if there are no samples
   SampleRange samples;  // what was rendered: shorter than asked for if stopped
   RayCounts rays;
   double seconds = 0;

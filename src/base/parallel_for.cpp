@@ -1,12 +1,19 @@
 #include "base/parallel_for.h"
 
 #include <tbb/blocked_range.h>
+#include <tbb/info.h>
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
+
+#include <algorithm>
 
 #include "base/happens_before.h"
 
 namespace arris {
+
+int usable_threads(int wanted) {
+  return std::min(wanted, tbb::info::default_concurrency());
+}
 
 void run_parallel(std::size_t count, const ParallelOptions& options, ParallelCall call,
                   const void* body) {
@@ -22,7 +29,7 @@ void run_parallel(std::size_t count, const ParallelOptions& options, ParallelCal
   };
   fork.release();
   if (options.threads > 0) {
-    tbb::task_arena arena(options.threads);
+    tbb::task_arena arena(usable_threads(options.threads));
     arena.execute([&] { tbb::parallel_for(all, run_range); });
   } else {
     tbb::parallel_for(all, run_range);

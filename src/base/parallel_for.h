@@ -16,6 +16,10 @@ struct ParallelOptions {
   int threads = 0;        // 0: all
 };
 
+// Of the threads that are asked for, those there are processors for: TBB would warn of the rest, and run them
+// as little.
+int usable_threads(int wanted);
+
 using ParallelCall = void (*)(const void* body, std::size_t index);
 void run_parallel(std::size_t count, const ParallelOptions& options, ParallelCall call,
                   const void* body);

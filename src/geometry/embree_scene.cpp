@@ -11,6 +11,7 @@
 
 #include "arris/error.h"
 #include "base/happens_before.h"
+#include "base/parallel_for.h"
 
 namespace arris {
 
@@ -22,7 +23,8 @@ struct EmbreeScene::Device {
   HappensBefore created, counted;  // Embree's threads call back
 
   explicit Device(int threads) {
-    const std::string config = threads > 0 ? "threads=" + std::to_string(threads) : std::string();
+    const std::string config =
+        threads > 0 ? "threads=" + std::to_string(usable_threads(threads)) : std::string();
     handle = rtcNewDevice(config.c_str());
     if (handle == nullptr) {
       throw Error(Error::Kind::failed, "",

@@ -75,13 +75,6 @@ class TemporaryFile {
   int descriptor_;
 };
 
-// A link stays a link: the file it points to is replaced.
-fs::path resolve_link(const fs::path& path) {
-  std::error_code error;
-  fs::path target = fs::is_symlink(path, error) ? fs::canonical(path, error) : path;
-  return error ? path : target;
-}
-
 bool is_device(const fs::path& path) {
   std::error_code error;
   const fs::file_status status = fs::status(path, error);
@@ -104,19 +97,23 @@ std::vector<std::uint8_t> read_file_bytes(const fs::path& path, std::uint64_t ma
   };
   std::error_code error;
   if (fs::is_directory(path, error)) fail("is a folder, not a file");
+  const fs::file_status status = fs::status(path, error);
+  if (fs::exists(status) && !fs::is_regular_file(status)) {
+    fail("is a pipe or device, not a file; copy what comes from it to a file");
+  }
   const File file(std::fopen(path.c_str(), "rb"));
   if (!file) fail("can't be opened: " + reason(errno));
 
   std::vector<std::uint8_t> bytes;
-  const std::uintmax_t size = fs::is_regular_file(path, error) ? fs::file_size(path, error) : 0;
+  const std::uintmax_t size = fs::file_size(path, error);
   const auto check_size = [&](std::uintmax_t n) {
     if (n > max_bytes) fail("is larger than the limit of " + std::to_string(max_bytes) + " bytes");
   };
   if (!error) check_size(size);
   bytes.reserve(error ? 0 : std::size_t(size) + 1);
   bytes.resize(error ? 0 : std::size_t(size));
-  // One byte more than expected, so that the end of file is seen; pipes have no size and grow in
-  // steps.
+  // One byte more than expected, so that the end of file is seen; some files of the system say no size and
+  // grow in steps.
   std::size_t used = 0;
   while (true) {
     if (used == bytes.size()) bytes.resize(used == size ? used + 1 : 2 * used + 65536);
@@ -130,20 +127,56 @@ std::vector<std::uint8_t> read_file_bytes(const fs::path& path, std::uint64_t ma
   return bytes;
 }
 
-void write_file_whole(const fs::path& path, std::span<const std::uint8_t> bytes) {
+fs::path link_target(const fs::path& path) {
+  constexpr int kMostLinks = 40;  // as the kernel
+  fs::path target = path;
+  std::error_code error;
+  for (int i = 0; i < kMostLinks && fs::is_symlink(target, error); ++i) {
+    target = target.parent_path() / fs::read_symlink(target, error);
+    if (error) return path;
+  }
+  return target;
+}
+
+struct NewFiles::File {
+  explicit File(const fs::path& to) : path(to), target(link_target(to)), temporary(target) {}
+
+  fs::path path;
+  fs::path target;  // a link stays a link: the file it points to is replaced
+  TemporaryFile temporary;
+};
+
+NewFiles::NewFiles() = default;
+NewFiles::~NewFiles() = default;
+
+void NewFiles::add(const fs::path& path, std::span<const std::uint8_t> bytes) {
   const auto fail = [&](int error_number) {
     throw Error(Error::Kind::failed, path.string(), "can't be written: " + reason(error_number));
   };
   if (is_device(path)) return write_device(path, bytes);
   std::error_code error;
   if (fs::is_directory(path, error)) fail(EISDIR);
-  const fs::path target = resolve_link(path);
-  TemporaryFile file(target);
-  if (!file.is_open()) fail(errno);
-  file.open_to_others();
-  if (!file.write(bytes)) fail(errno);
-  if (!file.close()) fail(errno);
-  if (!file.move_to(target)) fail(errno);
+  auto file = std::make_unique<File>(path);
+  if (!file->temporary.is_open()) fail(errno);
+  file->temporary.open_to_others();
+  if (!file->temporary.write(bytes)) fail(errno);
+  if (!file->temporary.close()) fail(errno);
+  files_.push_back(std::move(file));
+}
+
+void NewFiles::appear() {
+  for (const std::unique_ptr<File>& file : files_) {
+    if (!file->temporary.move_to(file->target)) {
+      throw Error(Error::Kind::failed, file->path.string(), "can't be written: " + reason(errno));
+    }
+  }
+  files_.clear();
+}
+
+void write_file_whole(const fs::path& path, std::span<const std::uint8_t> bytes) {
+  NewFiles file;
+  file.add(path, bytes);
+  file.appear();
 }
 
 }  // namespace arris

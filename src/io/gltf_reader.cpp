@@ -10,6 +10,7 @@
 #include "io/gltf_material.h"
 #include "io/gltf_mesh.h"
 #include "io/mesh_scene.h"
+#include "scene/limits.h"
 
 namespace arris {
 namespace {
@@ -20,12 +21,6 @@ constexpr double kLumensPerWatt = 683;
 Vec3d unit_or(Vec3d v, Vec3d fallback) {
   const double size = length(v);
   return size > 0 && std::isfinite(size) ? v / size : fallback;
-}
-
-// Too flat for an inverse; validate_scene() would refuse the object.
-bool is_flat(const Mat3d& m) {
-  const double scale = std::max({length(m.x), length(m.y), length(m.z)});
-  return !(std::abs(determinant(m)) > 1e-15 * scale * scale * scale);
 }
 
 // Nodes in depth-first order with their transforms. The document's nodes form trees.
@@ -113,7 +108,7 @@ class SceneBuilder {
     const GltfNode& node = document_.nodes[index];
     const std::uint32_t mesh = *node.mesh;
     if (!mesh_ids_[mesh] && meshes_[mesh].triangles.empty()) return;
-    if (is_flat(world_from_node.linear)) {
+    if (!is_invertible(world_from_node.linear)) {
       ++flattened_;
       return;
     }

@@ -43,13 +43,13 @@ class HeaderText {
   std::size_t position_ = 0;
 };
 
-// For messages: at most 60 characters, without control characters.
-inline std::string printable(std::string_view text) {
-  std::string shown(text.substr(0, 60));
+// For messages: without control characters; "…" stands for what goes beyond max_bytes.
+inline std::string printable(std::string_view text, std::size_t max_bytes = 60) {
+  std::string shown(text.substr(0, max_bytes));
   for (char& c : shown) {
     if (c < ' ' || c > '~') c = '?';
   }
-  return shown;
+  return text.size() > max_bytes ? shown + "…" : shown;
 }
 
 template <class Number>

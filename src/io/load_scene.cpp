@@ -10,6 +10,7 @@
 #include "base/nearest_name.h"
 #include "base/utf8_text.h"
 #include "io/file_bytes.h"
+#include "io/file_kind.h"
 #include "io/gltf_buffers.h"
 #include "io/gltf_reader.h"
 #include "io/mesh_readers.h"
@@ -53,12 +54,6 @@ constexpr Format kFormats[] = {
      nullptr},
 };
 
-std::string lower(std::string text) {
-  std::transform(text.begin(), text.end(), text.begin(),
-                 [](char c) { return c >= 'A' && c <= 'Z' ? char(c + ('a' - 'A')) : c; });
-  return text;
-}
-
 std::string join(const std::vector<std::string>& words) {
   std::string joined;
   for (const std::string& word : words) joined += (joined.empty() ? "" : " ") + word;
@@ -66,7 +61,7 @@ std::string join(const std::vector<std::string>& words) {
 }
 
 const Format& format_of(const fs::path& path) {
-  const std::string extension = lower(path.extension().string());
+  const std::string extension = extension_of(path);
   for (const Format& format : kFormats) {
     if (format.extension == extension) return format;
   }
@@ -77,8 +72,8 @@ const Format& format_of(const fs::path& path) {
                 "has no extension that says its format; " + read);
   }
   throw Error(Error::Kind::input, path.string(),
-              "the extension " + in_quotes(extension) + " is not known" +
-                  did_you_mean(extension, known) + "; " + read);
+              "the extension " + in_quotes(extension) + " is not known; " + read +
+                  did_you_mean(extension, known));
 }
 
 // A reader's complaint about a file of another format would mislead.

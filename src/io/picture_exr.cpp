@@ -253,6 +253,22 @@ bool is_exr(std::span<const std::uint8_t> bytes) {
   return bytes.size() >= 4 && std::equal(kMagic.begin(), kMagic.end(), bytes.begin());
 }
 
+namespace {
+
+// OpenEXR's own words, without the name of the file that Arris says already:
+// Cannot read image file "a.exr". Invalid display window in image header.
+std::string reason_of(std::string_view text, const std::string& name) {
+  constexpr std::size_t kMostBytes = 200;
+  const std::string named = "file \"" + name + "\". ";
+  if (const std::size_t at = text.find(named); at != std::string_view::npos) {
+    text.remove_prefix(at + named.size());
+  }
+  while (text.ends_with('.')) text.remove_suffix(1);
+  return printable(text, kMostBytes);
+}
+
+}  // namespace
+
 PictureFile decode_exr(std::span<const std::uint8_t> bytes, const std::string& name) {
   try {
     return Decoder(bytes, name).decode();
@@ -260,7 +276,7 @@ PictureFile decode_exr(std::span<const std::uint8_t> bytes, const std::string& n
     throw;
   } catch (const std::exception& error) {
     throw Error(Error::Kind::input, name,
-                "is a corrupt or incomplete EXR: " + printable(error.what()));
+                "is a corrupt or incomplete EXR: " + reason_of(error.what(), name));
   }
 }
 

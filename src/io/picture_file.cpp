@@ -4,15 +4,16 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <cmath>
 
 #include "arris/error.h"
 #include "image/srgb.h"
 #include "io/file_bytes.h"
+#include "io/file_kind.h"
 #include "io/picture_exr.h"
 #include "io/picture_hdr.h"
 #include "io/picture_jpeg.h"
+#include "io/picture_limits.h"
 #include "io/picture_pfm.h"
 #include "io/picture_png.h"
 
@@ -73,21 +74,16 @@ Samples8 display_samples(const Image& image, const SaveOptions& options) {
   return out;
 }
 
-std::filesystem::path layer_path(const std::filesystem::path& path, const std::string& layer) {
-  std::filesystem::path file = path;
-  return file.replace_extension("." + layer + ".pfm");
-}
-
 }  // namespace
 
 PictureFile decode_picture(std::span<const std::uint8_t> bytes, const std::string& name) {
   if (is_png(bytes)) {
     const Rgba16Image image = decode_png16(bytes, name);
-    return {linear_picture(image.width_px, image.height_px, image.pixels), {}};
+    return {linear_picture(image.width_px, image.height_px, image.pixels), {}, ValueEncoding::srgb};
   }
   if (is_jpeg(bytes)) {
     const Rgba8Image image = decode_jpeg(bytes, name);
-    return {linear_picture(image.width_px, image.height_px, image.texels), {}};
+    return {linear_picture(image.width_px, image.height_px, image.texels), {}, ValueEncoding::srgb};
   }
   if (is_exr(bytes)) return decode_exr(bytes, name);
   if (is_pfm(bytes)) return {three_channels(decode_pfm(bytes, name)), {}};
@@ -106,8 +102,7 @@ Picture load_picture(const std::filesystem::path& path) {
 }
 
 PictureFormat picture_format(const std::filesystem::path& path) {
-  std::string extension = path.extension().string();
-  for (char& c : extension) c = char(std::tolower(static_cast<unsigned char>(c)));
+  const std::string extension = extension_of(path);
   if (extension == ".png") return PictureFormat::png;
   if (extension == ".jpg" || extension == ".jpeg") return PictureFormat::jpeg;
   if (extension == ".exr") return PictureFormat::exr;
@@ -119,8 +114,21 @@ PictureFormat picture_format(const std::filesystem::path& path) {
                                               extension));
 }
 
+std::string problem_with_size(PictureFormat format, int width_px, int height_px) {
+  const int most = format == PictureFormat::jpeg ? kMaxJpegSide : int(kMaxPictureSide);
+  if (width_px >= 1 && height_px >= 1 && width_px <= most && height_px <= most) return "";
+  const std::string size = fmt::format("{} x {} pixels", width_px, height_px);
+  if (format == PictureFormat::jpeg && width_px >= 1 && height_px >= 1) {
+    return fmt::format("{} are too many for JPEG; use at most {} on a side, or .png", size, most);
+  }
+  return fmt::format("{} are no picture; use 1 to {} on a side", size, most);
+}
+
 std::vector<std::uint8_t> encode_picture(const Picture& picture, PictureFormat format,
                                          const SaveOptions& options) {
+  const std::string problem =
+      problem_with_size(format, picture.color.width_px, picture.color.height_px);
+  if (!problem.empty()) throw Error(Error::Kind::input, "", problem);
   switch (format) {
     case PictureFormat::png:
       return encode_png(display_samples(picture.color, options));
@@ -134,14 +142,22 @@ std::vector<std::uint8_t> encode_picture(const Picture& picture, PictureFormat f
   return {};
 }
 
+std::filesystem::path layer_file(const std::filesystem::path& path, const std::string& layer) {
+  std::filesystem::path file = path;
+  return file.replace_extension("." + layer + ".pfm");
+}
+
 void save_picture(const Picture& picture, const std::filesystem::path& path,
                   const SaveOptions& options) {
   const PictureFormat format = picture_format(path);
-  write_file_whole(path, encode_picture(picture, format, options));
-  if (format == PictureFormat::exr) return;
-  for (const Layer& layer : picture.layers) {
-    write_file_whole(layer_path(path, layer.name), encode_pfm(layer.image));
+  NewFiles files;
+  files.add(path, encode_picture(picture, format, options));
+  if (format != PictureFormat::exr) {
+    for (const Layer& layer : picture.layers) {
+      files.add(layer_file(path, layer.name), encode_pfm(layer.image));
+    }
   }
+  files.appear();
 }
 
 }  // namespace arris

@@ -11,6 +11,7 @@
 
 #include "arris/image.h"
 #include "arris/io.h"
+#include "image/compare.h"
 
 namespace arris {
 
@@ -18,7 +19,8 @@ using Attributes = std::vector<std::pair<std::string, std::string>>;
 
 struct PictureFile {
   Picture picture;
-  Attributes attributes;  // string attributes of an EXR file; else empty
+  Attributes attributes;                           // string attributes of an EXR file; else empty
+  ValueEncoding encoding = ValueEncoding::linear;  // of the file's values; the picture is linear
 };
 
 PictureFile load_picture_file(const std::filesystem::path& path);
@@ -30,7 +32,13 @@ enum class PictureFormat { png, jpeg, exr, pfm };
 // By extension; throws Error (kind input) for any other, naming those that are known.
 PictureFormat picture_format(const std::filesystem::path& path);
 
-// Layers are part of EXR only.
+// Where save_picture() puts a layer beside a picture whose format has none.
+std::filesystem::path layer_file(const std::filesystem::path& path, const std::string& layer);
+
+// Empty if the format takes pictures of this size; else what is wrong and what to do.
+std::string problem_with_size(PictureFormat format, int width_px, int height_px);
+
+// Layers are part of EXR only. Throws Error (kind input) for a size that the format does not take.
 std::vector<std::uint8_t> encode_picture(const Picture& picture, PictureFormat format,
                                          const SaveOptions& options = {});
 

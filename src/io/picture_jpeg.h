@@ -14,6 +14,8 @@
 
 namespace arris {
 
+inline constexpr int kMaxJpegSide = 65500;  // of libjpeg; the format could hold 65,535
+
 bool is_jpeg(std::span<const std::uint8_t> bytes);
 
 Rgba8Image decode_jpeg(std::span<const std::uint8_t> bytes, const std::string& name);

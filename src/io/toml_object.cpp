@@ -9,6 +9,7 @@
 #include "io/mesh_scene.h"
 #include "io/toml_scene_parts.h"
 #include "io/toml_shape.h"
+#include "scene/limits.h"
 
 namespace arris {
 namespace {
@@ -30,11 +31,6 @@ Mat3d rotation_matrix(Vec3d deg) {
     return Mat3d{{c, s, 0}, {-s, c, 0}, {0, 0, 1}};
   });
   return z * y * x;
-}
-
-bool is_invertible(const Mat3d& m) {
-  const double scale = std::max({length(m.x), length(m.y), length(m.z)});
-  return std::abs(determinant(m)) > 1e-15 * scale * scale * scale;
 }
 
 // 4 rows of 4 numbers.

@@ -7,6 +7,7 @@
 
 #include "io/mesh_scene.h"
 #include "io/toml_scene_parts.h"
+#include "scene/limits.h"
 
 namespace arris {
 namespace {
@@ -30,7 +31,8 @@ ImageSettings parse_image(const TomlMember& member, TomlProblems& problems) {
     image.width_px = int(size->x);
     image.height_px = int(size->y);
   }
-  image.samples_per_pixel = reader.integer("samples", 1, 1 << 24).value_or(image.samples_per_pixel);
+  image.samples_per_pixel =
+      reader.integer("samples", 1, kMostSamples).value_or(image.samples_per_pixel);
   image.max_depth = reader.integer("max_depth", 0, 1024).value_or(image.max_depth);
   image.exposure = reader.number("exposure", {-64, 64}).value_or(image.exposure);
   image.filter = reader.word<Filter>("filter", kFilters).value_or(image.filter);

@@ -95,8 +95,14 @@ std::vector<std::uint8_t> load_uri(std::string_view uri,
   if (name.empty() || !is_utf8(name) || std::ranges::any_of(name, is_control)) {
     throw Error(Error::Kind::input, where, in_quotes(name) + " is not a file name");
   }
+  const std::filesystem::path file = std::filesystem::path(name).lexically_normal();
+  if (file.is_absolute() || *file.begin() == "..") {
+    throw Error(
+        Error::Kind::input, where,
+        fmt::format("{} is outside the model's folder; put the file in it", in_quotes(name)));
+  }
   try {
-    return read_file_bytes(base_directory / name);
+    return read_file_bytes(base_directory / file);
   } catch (const Error& error) {
     throw Error(error.kind(), where, error.what());
   }

@@ -1,4 +1,6 @@
 // uri_bytes.h — what a URI inside a model file stands for: data: URIs and relative file names
+// Limits     files in the model's folder and below: a model from elsewhere reads nothing else of this machine
+//            (links in the folder are followed, they are the user's)
 // Errors     kind input: bad base64, missing file, a scheme that would need the network
 #pragma once
 

@@ -2,6 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+
+#include "render/ground_frame.h"
+#include "scene/scene_bounds.h"
 
 namespace arris {
 namespace {
@@ -29,8 +33,7 @@ Extent extent_of(const Scene& scene, const Axes& axes, double tan_x, double tan_
   constexpr double kNone = -std::numeric_limits<double>::infinity();
   Extent extent{kNone, kNone, kNone, kNone, kNone, kNone};
   for (const Object& object : scene.objects) {
-    for (const Vec3f& position : scene.meshes[object.mesh.index].positions) {
-      const Vec3d p = transform_point(object.world_from_object, Vec3d(position));
+    visit_positions(scene, object, [&](Vec3d p) {
       const double x = dot(p, axes.right), y = dot(p, axes.up), z = dot(p, axes.forward);
       extent.right = std::max(extent.right, x - tan_x * z);
       extent.left = std::max(extent.left, -x - tan_x * z);
@@ -38,7 +41,7 @@ Extent extent_of(const Scene& scene, const Axes& axes, double tan_x, double tan_
       extent.bottom = std::max(extent.bottom, -y - tan_y * z);
       extent.near = std::max(extent.near, -z);
       extent.far = std::max(extent.far, z);
-    }
+    });
   }
   return extent;
 }
@@ -63,24 +66,22 @@ CameraRays make_camera_rays(const Camera& camera, const ImageSettings& image) {
 Camera frame_scene(const Scene& scene, double fov_deg) {
   Camera camera;
   camera.fov_deg = fov_deg;
-  const Vec3d up = normalize(scene.up);
-  const Vec3d aside = std::abs(up.x) < 0.9 ? Vec3d(1, 0, 0) : Vec3d(0, 1, 0);
-  const Vec3d front = normalize(cross(aside, up));
-  const Vec3d right = cross(up, front);
-  const Vec3d to_camera =
-      std::cos(kElevation) * (std::sin(kAzimuth) * right + std::cos(kAzimuth) * front) +
-      std::sin(kElevation) * up;
-  const Axes axes = camera_axes(-to_camera, up);
+  const GroundFrame ground = make_ground_frame(scene.up);
+  const Vec3d to_camera = std::cos(kElevation) * (std::sin(kAzimuth) * ground.east -
+                                                  std::cos(kAzimuth) * ground.north) +
+                          std::sin(kElevation) * ground.up;
+  const Axes axes = camera_axes(-to_camera, ground.up);
   const double tan_y = std::tan(radians(camera.fov_deg) / 2) * (1 - 2 * kMargin);
   const double tan_x = tan_y * scene.image.width_px / scene.image.height_px;
   const Extent e = extent_of(scene, axes, tan_x, tan_y);
-  camera.up = up;
-  if (!std::isfinite(e.near)) {  // nothing to see
+  camera.up = ground.up;
+  const Bounds bounds = world_bounds(scene);
+  if (bounds.is_empty()) {  // nothing to see
     camera.position = to_camera * 5.0;
     camera.target = {};
     return camera;
   }
-  const double size = std::max({e.right + e.left, e.top + e.bottom, e.near + e.far, 0.0});
+  const double size = bounds.diagonal();
   const double nearest =
       -e.near - (size > 0 ? 1e-3 * size : 1.0);  // a flat or single point still is in front
   const double z =

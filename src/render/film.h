@@ -3,7 +3,7 @@
 // Guarantee  sums are double and grow sample by sample, so a picture depends on the samples it holds, not
 //            on how they were grouped in passes, tiles or threads
 // Cost       24 bytes a pixel for the colour and at most as many for each layer; different pixels may be
-//            written by different threads
+//            written by different threads. A copy is what a film held at that time.
 #pragma once
 
 #include <cstddef>

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <vector>
 
 #include "base/check.h"
@@ -83,14 +84,22 @@ PathRays render_tile(const Job& job, Tile tile, SampleRange samples, Film& film)
   return rays;
 }
 
-PathRays render_pass(const Job& job, const std::vector<Tile>& tiles, SampleRange samples,
-                     int threads, Film& film, SamplePasses& passes) {
+// Nothing if the pass must be dropped; some tiles of the film hold it then.
+std::optional<PathRays> render_pass(const Job& job, const std::vector<Tile>& tiles,
+                                    SampleRange samples, int threads, Film& film,
+                                    SamplePasses& passes) {
   std::vector<PathRays> rays(tiles.size());
   std::atomic<std::size_t> finished = 0;
+  std::atomic<bool> dropped = false;
   parallel_for(tiles.size(), {.grain = 1, .threads = threads}, [&](std::size_t i) {
+    if (dropped || passes.must_drop()) {
+      dropped = true;
+      return;
+    }
     rays[i] = render_tile(job, tiles[i], samples, film);
     passes.report(double(++finished) / double(tiles.size()));
   });
+  if (dropped) return std::nullopt;
   PathRays sum;
   for (const PathRays& tile : rays) {
     sum.total += tile.total;
@@ -119,15 +128,22 @@ class PathRenderer final : public Renderer {
     SamplePasses passes(options);
     RenderResult result;
     for (SampleRange pass = passes.next(); pass.first < pass.last; pass = passes.next()) {
-      const PathRays rays = render_pass(job, tiles, pass, options.threads, film, passes);
-      result.rays.total += rays.total;
-      result.rays.rounded += rays.rounded;
+      std::optional<Film> before;  // what an empty film held need not be kept
+      if (passes.is_droppable() && pass.first > options.samples.first) before = film;
+      const auto rays = render_pass(job, tiles, pass, options.threads, film, passes);
+      if (!rays) {
+        passes.drop();
+        if (before) film = *before;
+        break;
+      }
+      result.rays.total += rays->total;
+      result.rays.rounded += rays->rounded;
     }
     result.samples = passes.done();
     const std::uint32_t count = result.samples.last - result.samples.first;
     result.rays.camera =
         std::uint64_t(count) * std::uint64_t(image.width_px) * std::uint64_t(image.height_px);
-    result.picture = film.picture(count, options.aovs);
+    if (count > 0) result.picture = film.picture(count, options.aovs);
     result.seconds = passes.elapsed_seconds();
     return result;
   }

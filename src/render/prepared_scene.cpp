@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <chrono>
 #include <string>
 
@@ -10,20 +11,30 @@
 #include "render/camera.h"
 #include "render/meshed_bevels.h"
 #include "render/scene_geometry.h"
+#include "scene/scene_bounds.h"
 
 namespace arris {
 namespace {
 
-void throw_if_invalid(const Scene& scene) {
-  const std::vector<std::string> problems = validate_scene(scene);
-  if (problems.empty()) {
-    return;
+void end_if_stopped(const PrepareOptions& options) {
+  if (options.stop != nullptr && *options.stop) {
+    throw Error(Error::Kind::failed, "", "stopped before the first sample");
   }
-  std::string text;
-  for (const std::string& problem : problems) {
-    text += (text.empty() ? "" : "\n") + problem;
+}
+
+void note_vanished_triangles(Scene& scene) {
+  std::uint64_t triangles = 0, drawn = 0;
+  for (const Object& object : scene.objects) {
+    triangles += scene.meshes[object.mesh.index].triangles.size();
+    drawn += count_drawn_triangles(scene, object);
   }
-  throw Error(Error::Kind::input, "", text);
+  if (drawn == triangles) return;
+  const std::string note =
+      triangles - drawn == 1
+          ? "1 triangle has no area and is not drawn"
+          : fmt::format("{} triangles have no area and are not drawn", triangles - drawn);
+  // A scene that is prepared again says it already.
+  if (std::ranges::find(scene.notes, note) == scene.notes.end()) scene.notes.push_back(note);
 }
 
 // The bevel shader rounds nothing: a note says what it does.
@@ -80,25 +91,42 @@ const Scene& PreparedScene::scene() const {
   return geometry_->scene;
 }
 
+void check_scene(const Scene& scene, const std::string& where) {
+  const std::vector<std::string> problems = validate_scene(scene);
+  if (problems.empty()) {
+    return;
+  }
+  std::string text = problems[0];
+  for (std::size_t i = 1; i < problems.size(); ++i) {
+    text += fmt::format("\n{}{}{}", where, where.empty() ? "" : ": ", problems[i]);
+  }
+  throw Error(Error::Kind::input, where, text);
+}
+
 std::shared_ptr<const PreparedScene> prepare_scene(Scene scene, const PrepareOptions& options) {
   const auto start = std::chrono::steady_clock::now();
-  throw_if_invalid(scene);
+  check_scene(scene, "");
+  note_vanished_triangles(scene);
   if (!scene.camera) {
     scene.camera = frame_scene(scene);
   }
   if (!scene.environment) {
     scene.environment = StudioEnvironment{.strength = 1, .up = scene.up};
   }
+  end_if_stopped(options);
   MeshedBevels meshed = mesh_bevels(scene, scene.rounding, options.threads);
+  end_if_stopped(options);
   auto geometry = std::make_shared<SceneGeometry>(std::move(scene),
                                                   EmbreeSceneOptions{.threads = options.threads});
   geometry->build_seconds =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count() -
       meshed.seconds;
   geometry->meshed = std::move(meshed);
+  end_if_stopped(options);
   SceneRounding rounding = make_scene_rounding(*geometry, geometry->scene.rounding,
                                                {options.threads, options.detection});
   rounding.shaders = make_bevel_shaders(*geometry, geometry->scene.rounding);
+  end_if_stopped(options);
   return std::make_shared<const PreparedScene>(std::move(geometry), std::move(rounding));
 }
 

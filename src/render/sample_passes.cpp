@@ -17,20 +17,33 @@ double SamplePasses::elapsed_seconds() const {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
 }
 
+// A stop ends the render whatever it holds, a time limit once it holds the least samples.
+bool SamplePasses::must_end(std::uint32_t made) const {
+  if (options_.stop != nullptr && options_.stop->load(std::memory_order_relaxed)) {
+    return true;
+  }
+  return options_.time_limit_seconds > 0 && made >= options_.least_samples &&
+         elapsed_seconds() >= options_.time_limit_seconds;
+}
+
+bool SamplePasses::must_drop() const {
+  return droppable_ && must_end(pass_first_ - options_.samples.first);
+}
+
 // The first pass is one sample: it measures how long a sample takes.
 SampleRange SamplePasses::next() {
   const std::uint32_t first = options_.samples.first;
   const std::uint32_t left = std::max(options_.samples.last, position_) - position_;
   const std::uint32_t made = position_ - first;
-  if (options_.stop != nullptr && options_.stop->load()) {
+  if (must_end(made)) {
     return {position_, position_};
   }
   std::uint32_t count = 1;
+  const bool can_end = options_.stop != nullptr || options_.time_limit_seconds > 0;
+  droppable_ = can_end;
   if (made > 0) {
     const double elapsed = elapsed_seconds();
-    if (options_.time_limit_seconds > 0 && elapsed >= options_.time_limit_seconds) {
-      return {position_, position_};
-    }
+    droppable_ = can_end && elapsed / made > kPassSeconds;
     double seconds = kPassSeconds;
     if (options_.time_limit_seconds > 0) {
       seconds = std::min(seconds, options_.time_limit_seconds - elapsed);

@@ -1,8 +1,9 @@
 #include "render/scene_geometry.h"
 
 #include <algorithm>
-#include <limits>
-#include <span>
+#include <iterator>
+
+#include "scene/scene_bounds.h"
 
 namespace arris {
 namespace {
@@ -75,21 +76,13 @@ std::vector<EmissiveTriangle> collect_emitters(const SceneGeometry& geometry, Em
   return emitters;
 }
 
-SceneBounds bounds_of(const Scene& scene) {
-  constexpr double kFar = std::numeric_limits<double>::infinity();
-  Vec3d low(kFar), high(-kFar);
-  for (const Object& object : scene.objects) {
-    for (const Vec3f& position : scene.meshes[object.mesh.index].positions) {
-      const Vec3d p = transform_point(object.world_from_object, Vec3d(position));
-      low = min(low, p);
-      high = max(high, p);
-    }
-  }
-  if (!(low.x <= high.x)) {
+SceneBounds light_bounds(const Scene& scene) {
+  const Bounds bounds = world_bounds(scene);
+  if (bounds.is_empty()) {
     return {};
   }
-  const double radius = length(high - low) / 2;
-  return {Vec3f((low + high) * 0.5), radius > 0 ? float(radius) : 1.0F};
+  const double radius = bounds.diagonal() / 2;
+  return {Vec3f(bounds.center()), radius > 0 ? float(radius) : 1.0F};
 }
 
 }  // namespace
@@ -101,7 +94,7 @@ SceneGeometry::SceneGeometry(Scene described, const EmbreeSceneOptions& options)
   any_translucent = std::any_of(materials.begin(), materials.end(),
                                 [](const PreparedMaterial& m) { return m.translucent; });
   const std::vector<EmissiveTriangle> emitters = collect_emitters(*this, emitter_index);
-  lights = make_light_set(scene.lights, *scene.environment, emitters, bounds_of(scene));
+  lights = make_light_set(scene.lights, *scene.environment, emitters, light_bounds(scene));
 }
 
 WorldTriangle instanced_triangle(const Scene& scene, const GeometryRecord& record,

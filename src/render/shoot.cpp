@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "render/scene_geometry.h"
+#include "scene/scene_bounds.h"
 
 namespace arris {
 namespace {
@@ -32,18 +32,10 @@ std::optional<Plane> plane_of(const PreparedScene& scene, const SurfaceHit& hit)
 }  // namespace
 
 Shooter::Shooter(const PreparedScene& scene) : scene_(scene) {
-  Vec3d lower(std::numeric_limits<double>::infinity()), upper = -lower;
-  const Scene& described = scene.scene();
-  for (const Object& object : described.objects) {
-    for (const Vec3f& position : described.meshes[object.mesh.index].positions) {
-      const Vec3d p = transform_point(object.world_from_object, Vec3d(position));
-      lower = min(lower, p);
-      upper = max(upper, p);
-    }
-  }
-  if (!is_finite(lower)) return;
-  center_ = (lower + upper) * 0.5;
-  radius_ = length(upper - lower) / 2;
+  const Bounds bounds = world_bounds(scene.scene());
+  if (bounds.is_empty()) return;
+  center_ = bounds.center();
+  radius_ = bounds.diagonal() / 2;
 }
 
 std::optional<Shot> Shooter::shoot(const Ray& ray) const {

@@ -2,41 +2,22 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "render/camera.h"
+#include "render/ground_frame.h"
 #include "scene/material_presets.h"
+#include "scene/scene_bounds.h"
 
 namespace arris {
 namespace {
-
-struct Bounds {
-  Vec3d lower{std::numeric_limits<double>::infinity()};
-  Vec3d upper{-std::numeric_limits<double>::infinity()};
-};
-
-// Axes of the ground: `up` and two more, orthonormal.
-struct GroundFrame {
-  Vec3d east, north, up;
-};
-
-GroundFrame make_ground_frame(Vec3d scene_up) {
-  const Vec3d up = normalize(scene_up);
-  const Vec3d aside = std::abs(up.x) < 0.9 ? Vec3d(1, 0, 0) : Vec3d(0, 1, 0);
-  const Vec3d north = normalize(cross(up, aside));
-  return {cross(north, up), north, up};
-}
 
 // In the frame's coordinates.
 Bounds bounds_in(const Scene& scene, const GroundFrame& frame) {
   Bounds bounds;
   for (const Object& object : scene.objects) {
-    for (const Vec3f& position : scene.meshes[object.mesh.index].positions) {
-      const Vec3d p = transform_point(object.world_from_object, Vec3d(position));
-      const Vec3d local{dot(p, frame.east), dot(p, frame.north), dot(p, frame.up)};
-      bounds.lower = min(bounds.lower, local);
-      bounds.upper = max(bounds.upper, local);
-    }
+    visit_positions(scene, object, [&](Vec3d p) {
+      bounds.add({dot(p, frame.east), dot(p, frame.north), dot(p, frame.up)});
+    });
   }
   return bounds;
 }
@@ -82,10 +63,9 @@ Material make_ground_material(TextureId fade) {
 std::uint64_t add_ground(Scene& scene) {
   const GroundFrame frame = make_ground_frame(scene.up);
   const Bounds bounds = bounds_in(scene, frame);
-  const Vec3d size = bounds.upper - bounds.lower;
-  const double radius = std::max(length(size) / 2, 1e-6);
-  if (!std::isfinite(radius)) return 0;
-  const Vec3d middle = (bounds.lower + bounds.upper) * 0.5;
+  const double radius = bounds.diagonal() / 2;
+  if (!(radius > 0)) return 0;
+  const Vec3d middle = bounds.center();
   const Vec3d center = frame.east * middle.x + frame.north * middle.y +
                        frame.up * (bounds.lower.z - kGroundGap * radius);
 

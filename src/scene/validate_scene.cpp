@@ -11,14 +11,14 @@
 #include <vector>
 
 #include "arris/render.h"
+#include "scene/limits.h"
+#include "scene/scene_bounds.h"
 
 namespace arris {
 namespace {
 
 constexpr int kMaxSide = 65536;                      // pixels
 constexpr std::uint64_t kMaxTriangles = 1ULL << 31;  // of one mesh
-// Squares and products of four coordinates must stay within float.
-constexpr double kMaxCoordinate = 1e9;
 
 using Problems = std::vector<std::string>;
 
@@ -207,9 +207,50 @@ void check_rounding(const std::string& where, const RoundingSettings& rounding,
   }
 }
 
-bool invertible(const Mat3d& m) {
-  const double scale = std::max({length(m.x), length(m.y), length(m.z)});
-  return std::abs(determinant(m)) > 1e-15 * scale * scale * scale;
+bool all_usable(const std::vector<Vec3f>& positions) {
+  return std::ranges::all_of(positions, [](Vec3f p) { return usable_coordinate(Vec3d(p)); });
+}
+
+void check_reach(const Scene& scene, const Object& object, const std::string& where,
+                 Problems& problems) {
+  const Bounds bounds = world_bounds(scene, object);
+  if (bounds.is_empty() || (usable_coordinate(bounds.lower) && usable_coordinate(bounds.upper))) {
+    return;
+  }
+  if (!all_usable(scene.meshes[object.mesh.index].positions)) return;  // said of the mesh
+  problems.push_back(fmt::format(
+      "{}: reaches from {} to {}; coordinates must be numbers up to {:g}, scale it down", where,
+      list(bounds.lower), list(bounds.upper), kMaxCoordinate));
+}
+
+// Of a scene without other problems.
+void check_size(const Scene& scene, Problems& problems) {
+  std::uint64_t triangles = 0, drawn = 0;
+  Bounds all;
+  const Object* largest = nullptr;
+  double size = -1;
+  for (const Object& object : scene.objects) {
+    triangles += scene.meshes[object.mesh.index].triangles.size();
+    drawn += count_drawn_triangles(scene, object);
+    const Bounds bounds = world_bounds(scene, object);
+    all.add(bounds);
+    if (bounds.diagonal() > size) {
+      largest = &object;
+      size = bounds.diagonal();
+    }
+  }
+  if (triangles == 0) return;
+  if (all.diagonal() > 0 && all.diagonal() < kMinSize) {
+    problems.push_back(fmt::format(
+        "object \"{}\": is {:g} large; at least {:g} is needed, as areas of smaller triangles "
+        "vanish in floats; scale it up",
+        largest->name, all.diagonal(), kMinSize));
+  } else if (drawn == 0) {
+    problems.push_back(fmt::format(
+        "object \"{}\": nothing is left to draw: of {} triangles none has an area at coordinates "
+        "near {}; move the model nearer to the origin, or check it",
+        largest->name, triangles, list(all.center())));
+  }
 }
 
 void check_object(const Scene& scene, std::size_t index, Problems& problems) {
@@ -230,10 +271,12 @@ void check_object(const Scene& scene, std::size_t index, Problems& problems) {
     problems.push_back(
         fmt::format("{}: its transform holds what is not a number or is larger than {:g}", where,
                     kMaxCoordinate));
-  } else if (!invertible(m.linear)) {
+  } else if (!is_invertible(m.linear)) {
     problems.push_back(
         fmt::format("{}: its transform flattens it (determinant {:g}); use a scale other than 0",
                     where, determinant(m.linear)));
+  } else if (object.mesh.index < scene.meshes.size()) {
+    check_reach(scene, object, where, problems);
   }
   if (object.rounding) {
     check_rounding(where, *object.rounding, problems);
@@ -361,7 +404,7 @@ void check_image(const ImageSettings& image, Problems& problems) {
     problems.push_back(fmt::format("image: size {}x{}; sides must be from 1 to {} pixels",
                                    image.width_px, image.height_px, kMaxSide));
   }
-  check_range("image", "samples per pixel", image.samples_per_pixel, 1, 1 << 24, problems);
+  check_range("image", "samples per pixel", image.samples_per_pixel, 1, kMostSamples, problems);
   check_range("image", "max_depth", image.max_depth, 0, 1024, problems);
   check_range("image", "exposure", image.exposure, -64, 64, problems);
 }
@@ -397,6 +440,9 @@ std::vector<std::string> validate_scene(const Scene& scene) {
   }
   if (scene.rounding) {
     check_rounding("scene", *scene.rounding, problems);
+  }
+  if (problems.empty()) {
+    check_size(scene, problems);
   }
   return problems;
 }

@@ -2,6 +2,7 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
 #include <fstream>
 
@@ -58,6 +59,47 @@ TEST(FileBytes, read_refuses_files_above_the_limit) {
   EXPECT_EQ(read_file_bytes(folder / "a", 101).size(), 101U);
   EXPECT_THAT(error_of([&] { read_file_bytes(folder / "a", 100); }, Error::Kind::input),
               HasSubstr("limit of 100 bytes"));
+}
+
+TEST(FileBytes, read_refuses_what_may_never_end) {
+  const TemporaryFolder folder;
+  ASSERT_EQ(::mkfifo((folder / "pipe").c_str(), 0600), 0);
+  fs::create_symlink("/dev/zero", folder / "zero");
+  for (const char* name : {"pipe", "zero"}) {
+    EXPECT_THAT(error_of([&] { read_file_bytes(folder / name); }, Error::Kind::input),
+                HasSubstr("is a pipe or device, not a file; copy what comes from it to a file"));
+  }
+}
+
+TEST(FileBytes, new_files_appear_together_or_not_at_all) {
+  const TemporaryFolder folder;
+  write_file_whole(folder / "a", some_bytes(3));
+  fs::create_directory(folder / "c");
+  {
+    NewFiles files;
+    files.add(folder / "a", some_bytes(10));
+    files.add(folder / "b", some_bytes(10));
+    EXPECT_THROW(files.add(folder / "c", some_bytes(10)), Error);
+  }
+  EXPECT_EQ(read_file_bytes(folder / "a"), some_bytes(3));
+  EXPECT_EQ(std::distance(fs::directory_iterator(folder.path()), fs::directory_iterator()), 2);
+  NewFiles files;
+  files.add(folder / "a", some_bytes(10));
+  files.add(folder / "b", some_bytes(20));
+  files.appear();
+  EXPECT_EQ(read_file_bytes(folder / "a"), some_bytes(10));
+  EXPECT_EQ(read_file_bytes(folder / "b"), some_bytes(20));
+}
+
+TEST(FileBytes, write_keeps_links_to_what_is_not_there_yet) {
+  const TemporaryFolder folder;
+  fs::create_directory(folder / "d");
+  fs::create_symlink("d/target", folder / "link");
+  fs::create_symlink("link", folder / "second");
+  write_file_whole(folder / "second", some_bytes(5));
+  EXPECT_TRUE(fs::is_symlink(folder / "second"));
+  EXPECT_TRUE(fs::is_symlink(folder / "link"));
+  EXPECT_EQ(read_file_bytes(folder / "d/target"), some_bytes(5));
 }
 
 TEST(FileBytes, write_replaces_the_file_and_leaves_nothing_else) {

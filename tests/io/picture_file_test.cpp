@@ -273,5 +273,38 @@ TEST(PictureFile, says_what_is_wrong_in_the_header) {
   EXPECT_THAT(error_of(bytes_of("#?RGBE\n\n+X 8 -Y 8\n")), HasSubstr("use -Y height +X width"));
 }
 
+TEST(PictureFile, what_is_wrong_with_an_exr_is_said_to_its_end) {
+  Bytes bytes = encode_picture(small_picture(), PictureFormat::exr);
+  const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+  // The type of the attribute, so that OpenEXR reads another one than it expects.
+  bytes[text.find("displayWindow") + 14] = 'x';
+  EXPECT_EQ(error_of(bytes),
+            "in: is a corrupt or incomplete EXR: Unexpected type for image attribute "
+            "\"displayWindow\"");
+}
+
+TEST(PictureFile, a_size_that_the_format_does_not_take_is_refused) {
+  const auto refusal = [](PictureFormat format, int width, int height) {
+    try {
+      encode_picture({Image(width, height, 3), {}}, format);
+    } catch (const Error& error) {
+      EXPECT_EQ(int(error.kind()), int(Error::Kind::input));
+      return std::string(error.what());
+    }
+    return std::string();
+  };
+  for (const PictureFormat format :
+       {PictureFormat::png, PictureFormat::jpeg, PictureFormat::exr, PictureFormat::pfm}) {
+    EXPECT_EQ(refusal(format, 0, 0),
+              "0 x 0 pixels are no picture; use 1 to " +
+                  std::string(format == PictureFormat::jpeg ? "65500" : "65535") + " on a side");
+    EXPECT_EQ(refusal(format, 3, 2), "");
+  }
+  EXPECT_EQ(refusal(PictureFormat::jpeg, 65501, 1),
+            "65501 x 1 pixels are too many for JPEG; use at most 65500 on a side, or .png");
+  EXPECT_EQ(refusal(PictureFormat::jpeg, 65500, 1), "");
+  EXPECT_EQ(refusal(PictureFormat::png, 65501, 1), "");
+}
+
 }  // namespace
 }  // namespace arris

@@ -243,6 +243,21 @@ TEST(Interrupted, a_part_and_its_rest_make_the_whole) {
   EXPECT_GT(saved.samples[0].last + 4, part.samples[0].last);
 }
 
+TEST(Interrupted, before_the_first_sample_leaves_the_old_file) {
+  const Workplace place;
+  for (const char* name : {"a.pfm", "a.png", "a.exr", "a.jpg"}) {
+    test::write_text(place / name, "old");
+    const Outcome run =
+        place.shell(std::string("'" ARRIS_BINARY_DIR "/arris' render cube.stl --quiet --spp 4 "
+                                "--size 4000x3000 --stats s.json -o ") +
+                    name + " & pid=$!; sleep 0.7; kill -TERM $pid; wait $pid");
+    EXPECT_EQ(run.code, 1) << name;
+    EXPECT_EQ(run.err, "arris: stopped before the first sample\n");
+    EXPECT_EQ(place.read(name), "old");
+    EXPECT_FALSE(std::filesystem::exists(place / "s.json"));
+  }
+}
+
 TEST(Interrupted, killed_at_once_leaves_the_old_file) {
   const Workplace place;
   test::write_text(place / "a.png", "old");

@@ -81,11 +81,12 @@ INSTANTIATE_TEST_SUITE_P(
         Misuse{"render cube.stl -o a.png --integrator edge-point",
                "integrator edge-point is not in this build; use path\n"},
         Misuse{"render cube.stl -o a.png --integrator pth",
-               "--integrator: \"pth\" is not known; did you mean \"path\"?; use one of path\n"},
+               "--integrator: \"pth\" is not known; use path; did you mean \"path\"?\n"},
         Misuse{"render cube.stl -o a.png --aov coverage_lo",
                "--aov: coverage_lo needs the integrator beam"},
         Misuse{"render cube.stl -o a.png --aov albeda",
-               "--aov: \"albeda\" is not known; did you mean \"albedo\"?"},
+               "--aov: \"albeda\" is not known; use one of albedo, normal, depth, object, rounded; "
+               "did you mean \"albedo\"?\n"},
         Misuse{"render cube.stl -o a.png --size", "--size takes one value, once: --size WxH\n"},
         Misuse{"render cube.stl -o a.png --size 10", "--size: \"10\" is no size; use WIDTHxHEIGHT"},
         Misuse{"render cube.stl -o a.png --size 0x10", "--size: \"0x10\" is out of range"},
@@ -113,7 +114,8 @@ INSTANTIATE_TEST_SUITE_P(
         Misuse{"render cube.stl -o a.png --round big",
                "--round: \"big\" is no radius; use auto, none"},
         Misuse{"render cube.stl -o a.png --round-edges convx",
-               "--round-edges: \"convx\" is not known; did you mean \"convex\"?"},
+               "--round-edges: \"convx\" is not known; use one of convex, concave, both; did you "
+               "mean \"convex\"?\n"},
         Misuse{"render cube.stl -o a.png --round-method mesh",
                "--round-method: \"mesh\" is incomplete"},
         Misuse{"render cube.stl -o a.png --round-method mesh:0",
@@ -121,7 +123,8 @@ INSTANTIATE_TEST_SUITE_P(
         Misuse{"render cube.stl -o a.png --round-min-angle 200",
                "--round-min-angle: \"200\" is out of range"},
         Misuse{"render cube.stl -o a.png --lighting stdio",
-               "--lighting: \"stdio\" is not known; did you mean \"studio\"?"},
+               "--lighting: \"stdio\" is not known; use one of studio, sky, white; did you mean "
+               "\"studio\"?\n"},
         Misuse{"render cube.stl -o a.png --material bras",
                "--material: \"bras\" is no material; did you mean \"brass\"?"},
         Misuse{"render cube.stl -o a.png --threads 0",
@@ -135,6 +138,15 @@ INSTANTIATE_TEST_SUITE_P(
         Misuse{"render cube.stl -o a.png --checkpoint a.png",
                "--checkpoint: needs a file that ends in .exr\n"},
         Misuse{"render cube.stl -o - --aov albedo", "--aov: needs an output file, not stdout\n"},
+        Misuse{"render cube.stl -o a.png --quiet=false", "--quiet takes no value\n"},
+        Misuse{"info cube.stl --json=2", "--json takes no value\n"},
+        Misuse{"info --help=1", "--help takes no value\n"},
+        Misuse{"render cube.stl -o a.png --quiet --verbose",
+               "--quiet and --verbose contradict each other; use one of them\n"},
+        Misuse{"render cube.stl -o a.png --round 0.5 --round-method none",
+               "--round-method: \"none\" contradicts --round 0.5; leave one of them out\n"},
+        Misuse{"info cube.stl --round none --round-method mesh:3",
+               "--round-method: \"mesh:3\" contradicts --round none; leave one of them out\n"},
         Misuse{"shoot cube.stl", "arris shoot needs rays: --rays FILE"},
         Misuse{"shoot cube.stl --rays none.txt", "none.txt: can't be opened"},
         Misuse{"merge a.exr", "arris merge needs an output file: -o whole.exr\n"},
@@ -147,17 +159,82 @@ TEST(Usage, a_wrong_option_is_told_before_the_model_is_read) {
   EXPECT_THAT(Workplace().arris("render none.stl -o a.png --spp x").err, HasSubstr("--spp"));
 }
 
-TEST(Usage, outputs_that_can_not_be_written_fail_with_code_1_before_rendering) {
+TEST(Usage, outputs_that_can_not_be_written_are_refused_before_any_work) {
   const Workplace place;
   for (const char* arguments :
        {"render cube.stl -o none/a.png", "render cube.stl -o a.png --stats none/s.json",
-        "render cube.stl -o a.png --checkpoint none/c.exr"}) {
+        "render cube.stl -o a.png --checkpoint none/c.exr", "merge x.exr -o none/a.exr",
+        "compare x.png y.png --diff none/d.png"}) {
     const Outcome run = place.arris(arguments);
-    EXPECT_EQ(run.code, 1) << arguments;
+    EXPECT_EQ(run.code, 2) << arguments;
     EXPECT_THAT(run.err, HasSubstr("can't be written: there is no folder none")) << arguments;
   }
-  EXPECT_EQ(place.shell("mkdir d.png; arris render cube.stl -o d.png").code, 1);
+  EXPECT_EQ(place.shell("mkdir d.png; arris render cube.stl -o d.png").code, 2);
+  const Outcome layer =
+      place.shell("mkdir a.depth.pfm; arris render cube.stl -o a.png --aov depth");
+  EXPECT_EQ(layer.code, 2);
+  EXPECT_EQ(layer.err, "arris: a.depth.pfm: can't be written: it is a folder\n");
+  EXPECT_THAT(place.arris("compare x.png y.png --diff d.gif").err,
+              HasSubstr("d.gif: \".gif\" is no picture format"));
+  EXPECT_THAT(place.arris("render cube.stl --size 65535x1 -o a.jpg").err,
+              HasSubstr("a.jpg: 65535 x 1 pixels are too many for JPEG"));
   EXPECT_FALSE(std::filesystem::exists(place / "a.png"));
+}
+
+TEST(Usage, files_that_would_overwrite_each_other_are_refused) {
+  const Workplace place;
+  const std::string cube = place.read("cube.stl");
+  ASSERT_EQ(
+      place.shell("ln -s cube.stl link.json; ln cube.stl hard.json; ln -s a.exr b.exr; mkdir d")
+          .code,
+      0);
+  const auto error = [&](const std::string& arguments) {
+    const Outcome run = place.arris("render cube.stl --size 8x8 --spp 1 " + arguments);
+    EXPECT_EQ(run.code, 2) << arguments;
+    EXPECT_EQ(place.read("cube.stl"), cube);
+    EXPECT_FALSE(std::filesystem::exists(place / "a.exr"));
+    return run.err;
+  };
+  for (const char* stats : {"cube.stl", "./cube.stl", "link.json", "hard.json", "d/../cube.stl"}) {
+    EXPECT_THAT(error(std::string("-o a.exr --stats ") + stats),
+                HasSubstr(": INPUT and --stats are one file; name another\n"));
+  }
+  EXPECT_THAT(error("-o a.exr --stats a.exr"), HasSubstr("-o and --stats are one file"));
+  EXPECT_THAT(error("-o a.exr --checkpoint d/../a.exr"), HasSubstr("-o and --checkpoint are one"));
+  EXPECT_THAT(error("-o a.exr --checkpoint b.exr"), HasSubstr("-o and --checkpoint are one file"));
+  EXPECT_THAT(error("-o a.png --aov depth --stats a.depth.pfm"),
+              HasSubstr("--aov depth and --stats are one file"));
+  EXPECT_EQ(place.arris("render cube.stl --size 8x8 --spp 1 -o a.png --stats /dev/null").code, 0);
+}
+
+TEST(Usage, a_link_to_nothing_stays_a_link) {
+  const Workplace place;
+  const Outcome run = place.shell(
+      "mkdir d; ln -s d/real.png link.png; "
+      "arris render cube.stl --size 8x8 --spp 1 --quiet -o link.png");
+  EXPECT_EQ(run.code, 0) << run.err;
+  EXPECT_TRUE(std::filesystem::is_symlink(place / "link.png"));
+  EXPECT_TRUE(std::filesystem::is_regular_file(place / "d/real.png"));
+}
+
+TEST(Usage, words_after_two_dashes_are_files) {
+  const Workplace place;
+  EXPECT_EQ(place.shell("cp cube.stl ./-x.stl; arris info -- -x.stl").code, 0);
+  EXPECT_EQ(place.arris("info --quiet -- -x.stl").code, 0);
+  EXPECT_EQ(place.arris("info -x.stl").code, 2);
+}
+
+TEST(Usage, extensions_may_be_in_any_case) {
+  const Workplace place;
+  test::write_text(place / "s.toml", "[[object]]\nfile = \"cube.stl\"\n");
+  ASSERT_EQ(place.shell("cp s.toml S.TOML").code, 0);
+  const std::string render = "render --size 16x12 --spp 2 --quiet ";
+  ASSERT_EQ(place.arris(render + "s.toml -o a.exr").code, 0);
+  ASSERT_EQ(place.arris(render + "S.TOML -o b.EXR").code, 0);
+  EXPECT_TRUE(place.read("a.exr") == place.read("b.EXR"));
+  EXPECT_EQ(place.arris("info s.toml --json").out, place.arris("info S.TOML --json").out);
+  ASSERT_EQ(place.arris(render + "cube.stl -o c.exr").code, 0);
+  EXPECT_EQ(place.arris("compare a.exr c.exr").out, place.arris("compare b.EXR c.exr").out);
 }
 
 TEST(Usage, a_full_disk_is_a_failure) {
@@ -167,10 +244,41 @@ TEST(Usage, a_full_disk_is_a_failure) {
   EXPECT_THAT(run.err, HasSubstr("stdout: can't be written"));
 }
 
+TEST(Usage, messages_that_can_not_be_printed_change_nothing_else) {
+  const Workplace place;
+  const std::string render = "arris render cube.stl --size 8x8 --spp 1 ";
+  ASSERT_EQ(place.shell(render + "-o a.png").code, 0);
+  for (const char* nowhere : {"2>/dev/full", "2>&-", "<&- 2>&-", "2>&1 >/dev/full | true"}) {
+    ASSERT_EQ(place.shell(render + "-o b.png " + nowhere).code, 0) << nowhere;
+    EXPECT_TRUE(place.read("b.png") == place.read("a.png")) << nowhere;
+    if (std::string_view(nowhere).ends_with("true")) continue;
+    EXPECT_EQ(place.shell("arris render none.stl -o c.png " + std::string(nowhere)).code, 2);
+  }
+}
+
+TEST(Usage, results_that_can_not_be_printed_are_a_failure) {
+  const Workplace place;
+  for (const char* nowhere : {">/dev/full", ">&-"}) {
+    for (const char* command : {"info cube.stl", "--help", "render cube.stl --material list"}) {
+      const Outcome run = place.shell(std::string("arris ") + command + nowhere);
+      EXPECT_EQ(run.code, 1) << command << nowhere;
+    }
+  }
+}
+
 TEST(Usage, quiet_is_silent) {
   const Outcome run = Workplace().arris("render cube.stl --size 8x8 --spp 1 -o a.png --quiet");
   EXPECT_EQ(run.code, 0);
   EXPECT_EQ(run.out + run.err, "");
+}
+
+TEST(Usage, more_threads_than_processors_are_no_matter) {
+  for (const char* threads : {"7", "1024"}) {
+    const Outcome run = Workplace().arris(
+        std::string("render cube.stl --size 8x8 --spp 1 -o a.png --quiet --threads ") + threads);
+    EXPECT_EQ(run.code, 0);
+    EXPECT_EQ(run.out + run.err, "");
+  }
 }
 
 TEST(Usage, materials_are_listed) {

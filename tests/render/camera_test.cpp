@@ -38,9 +38,9 @@ Frame2d project(const Scene& scene, const Camera& camera) {
   return frame;
 }
 
-Scene model(const Mesh& mesh, int width_px, int height_px) {
+Scene model(const Mesh& mesh, int width_px, int height_px, Vec3d place = {100, -20, 3}) {
   Scene scene;
-  add_object(scene, mesh, make_lambert(0.5F), translation({100, -20, 3}));
+  add_object(scene, mesh, make_lambert(0.5F), translation(place));
   scene.image.width_px = width_px;
   scene.image.height_px = height_px;
   return scene;
@@ -60,6 +60,19 @@ TEST(camera, frames_any_model_tightly_with_a_margin) {
         EXPECT_NEAR(std::max(f.right - f.left, f.bottom - f.top), 0.84, 0.01);
       }
     }
+  }
+}
+
+TEST(camera, frames_a_model_alike_wherever_it_is) {
+  const Frame2d here = project(model(make_box_mesh({1, 1, 1}), 1280, 720, {}),
+                               frame_scene(model(make_box_mesh({1, 1, 1}), 1280, 720, {})));
+  for (const double far : {1e3, 1e5, -1e5, 1e7}) {
+    const Scene scene = model(make_box_mesh({1, 1, 1}), 1280, 720, Vec3d(far));
+    const Frame2d there = project(scene, frame_scene(scene));
+    EXPECT_NEAR(there.left, here.left, 1e-5) << far;
+    EXPECT_NEAR(there.right, here.right, 1e-5) << far;
+    EXPECT_NEAR(there.top, here.top, 1e-5) << far;
+    EXPECT_NEAR(there.bottom, here.bottom, 1e-5) << far;
   }
 }
 

@@ -100,7 +100,46 @@ TEST(progress, a_stop_before_the_start_renders_nothing) {
   options.stop = &stop;
   const RenderResult result = make_path_renderer()->render(*scene, options);
   EXPECT_EQ(result.samples.first, result.samples.last);
-  EXPECT_EQ(mean_of(result.picture.color), 0.0);
+  EXPECT_EQ(result.picture.color.width_px, 0);
+}
+
+// Passes of a picture of this size take more than half a second.
+constexpr int kSlowSide = 1000;
+
+TEST(progress, a_stop_within_the_first_pass_drops_it) {
+  const auto scene = prepare_scene(make_still_life(kSlowSide));
+  std::atomic<bool> stop = false;
+  RenderOptions options;
+  options.aovs = kAllAovs;
+  options.stop = &stop;
+  options.on_progress = [&](const Progress&) { stop = true; };
+  const RenderResult result = make_path_renderer()->render(*scene, options);
+  EXPECT_EQ(result.samples.first, result.samples.last);
+  EXPECT_EQ(result.rays.total, 0U);
+  EXPECT_EQ(result.picture.color.width_px, 0);
+}
+
+TEST(progress, a_stop_within_a_long_pass_keeps_the_passes_before) {
+  const auto scene = prepare_scene(make_still_life(kSlowSide));
+  std::atomic<bool> stop = false;
+  RenderOptions options;
+  options.samples = {0, 3};
+  options.aovs = kAllAovs;
+  options.stop = &stop;
+  options.on_progress = [&](const Progress& progress) { stop = progress.done > 0.35; };
+  const RenderResult result = make_path_renderer()->render(*scene, options);
+  ASSERT_EQ(result.samples.last, 1U);
+  EXPECT_EQ(result.rays.camera, std::uint64_t{kSlowSide + 5} * kSlowSide);
+  expect_same_bytes(result.picture, render_range(*scene, {0, 1}).picture);
+}
+
+TEST(progress, a_time_limit_within_the_first_pass_waits_for_the_least_samples) {
+  const auto scene = prepare_scene(make_still_life(kSlowSide));
+  RenderOptions options;
+  options.time_limit_seconds = 0.05;
+  EXPECT_EQ(make_path_renderer()->render(*scene, options).samples.last, 1U);
+  options.least_samples = 0;
+  EXPECT_EQ(make_path_renderer()->render(*scene, options).samples.last, 0U);
 }
 
 TEST(progress, time_limit_ends_soon_after) {

@@ -23,6 +23,10 @@ Scene valid_scene() {
   return scene;
 }
 
+Affine3d scaling(double factor) {
+  return {{{factor, 0, 0}, {0, factor, 0}, {0, 0, factor}}, {}};
+}
+
 void expect_problem(const Scene& scene, const std::string& text) {
   EXPECT_THAT(validate_scene(scene), ElementsAre(HasSubstr(text)));
 }
@@ -69,6 +73,42 @@ TEST(validate_scene, rejects_flattening_transforms) {
   expect_problem(scene, "object \"leg\": its transform flattens it");
   scene.objects[0].world_from_object.linear.z = {0, 0, 1e-4};  // thin is allowed
   EXPECT_THAT(validate_scene(scene), ElementsAre());
+}
+
+TEST(validate_scene, rejects_objects_that_reach_too_far) {
+  Scene scene = valid_scene();
+  scene.objects[0].world_from_object = scaling(1e30);
+  expect_problem(scene, "object \"leg\": reaches from (-1e+30, -1e+30, -1e+30) to (1e+30, ");
+  scene.objects[0].world_from_object = scaling(1e8);
+  EXPECT_THAT(validate_scene(scene), ElementsAre());
+}
+
+TEST(validate_scene, rejects_scenes_too_small_for_the_ray_kernel) {
+  Scene scene = valid_scene();
+  scene.objects[0].world_from_object = scaling(1e-9);
+  expect_problem(scene, "object \"leg\": is 3.4641e-09 large; at least 1e-07 is needed");
+  scene.objects[0].world_from_object = scaling(1e-7);
+  EXPECT_THAT(validate_scene(scene), ElementsAre());
+  // Beside something of a size that can be seen it is no harm.
+  scene.objects[0].world_from_object = scaling(1e-9);
+  add_object(scene, make_box_mesh({1, 1, 1}), make_lambert(0.5F));
+  EXPECT_THAT(validate_scene(scene), ElementsAre());
+}
+
+TEST(validate_scene, rejects_scenes_of_which_nothing_is_left_to_draw) {
+  Scene scene = valid_scene();
+  scene.objects[0].world_from_object = translation({1e8, 1e8, 1e8}) * scaling(0.1);
+  expect_problem(scene,
+                 "object \"leg\": nothing is left to draw: of 12 triangles none has an area");
+  scene.objects.clear();
+  EXPECT_THAT(validate_scene(scene), ElementsAre());
+}
+
+TEST(prepare_scene, notes_triangles_without_area_once) {
+  Scene scene = valid_scene();
+  scene.meshes[0].triangles.push_back({0, 0, 1});
+  const auto prepared = prepare_scene(scene);
+  EXPECT_THAT(scene_of(*prepared).notes, ElementsAre("1 triangle has no area and is not drawn"));
 }
 
 TEST(validate_scene, rejects_bad_cameras) {
