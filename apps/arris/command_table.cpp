@@ -60,7 +60,8 @@ CommandRow render_row() {
          {"--max-depth", "N", "bounces of light (default: the scene's, else 8)"},
          {"--seed", "N", "another pattern of noise (default: 0)"},
          {"--samples", "A..B",
-          "only these samples of the sequence; arris merge joins such .exr parts"},
+          "only these samples of the sequence; arris merge joins such .exr parts, which hold their "
+          "exact sums besides, to the bytes of the whole"},
          {"--integrator", "path", "how light is computed (default: path)"}}},
        camera_group(),
        {"Staging",
@@ -142,7 +143,8 @@ CommandRow merge_row() {
           "join parts of one render",
           "The parts are .exr files that arris render wrote with --samples or that were "
           "interrupted. Parts of "
-          "different scenes, sizes or seeds and parts that share samples are refused.",
+          "different scenes, sizes or seeds and parts that share samples are refused. The picture "
+          "has the bytes of one rendered in one piece.",
           {{"Output",
             {{"-o,--output", "FILE", "the whole picture: .exr, or .png .jpg .pfm (required)"},
              {"--exposure", "STOPS", "brightness of .png and .jpg (default: 0)"},
@@ -152,6 +154,9 @@ CommandRow merge_row() {
           run_merge};
 }
 
+             {"--part", "",
+              "the picture is itself a part: keep the sums in it (default: if it lacks samples "
+              "from 0 on)"},
 CommandRow compare_row() {
   return {"compare",
           "A B",

@@ -52,11 +52,13 @@ void write_picture(const RenderRequest& request, const JobResult& result, double
   options.exposure = exposure;
   options.attributes = attributes_of(result.part);
   if (request.output == "-") {
-    write_stdout(encode_picture(result.picture, PictureFormat::png, options));
-  } else {
-    save_picture(result.picture, request.output, options);
+    write_stdout(encode_picture(mean_picture(result.sum), PictureFormat::png, options));
+    return;
   }
 }
+  const bool is_part = request.is_part || (!result.complete && request.time_limit_seconds == 0);
+  const bool keep_sum = is_part && picture_format(request.output) == PictureFormat::exr;
+  save_picture(keep_sum ? pack_sum(result.sum) : mean_picture(result.sum), request.output, options);
 
 void write_stats(const std::string& path, const RenderStats& stats) {
   const std::string text = stats_json(stats);

@@ -144,6 +144,7 @@ RenderRequest make_render_request(const Arguments& arguments) {
   request.output = parse_output(arguments);
   check_integrator(arguments);
   request.aovs = parse_aovs(arguments);
+  request.is_part = arguments.has("--samples");
   request.stage = make_stage_options(arguments, request.input);
   request.samples = make_samples(arguments);
   request.threads = threads_of(arguments);

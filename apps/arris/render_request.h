@@ -20,6 +20,7 @@ struct RenderRequest {
   std::optional<std::filesystem::path> checkpoint;
   StageOptions stage;
   std::optional<SampleRange> samples;  // empty: from 0 to the scene's
+  bool is_part = false;                // to be joined with others
   double time_limit_seconds = 0;
   std::uint32_t seed = 0;
   int threads = 0;

@@ -53,8 +53,8 @@ struct PrepareStats {
 const PrepareStats& prepare_stats(const PreparedScene& prepared);
 const Scene& scene_of(const PreparedScene& prepared);  // with camera and environment filled in
 
-// Half-open range of the sample sequence. Two parts A..B and B..C, averaged with their counts as weights,
-// are the render A..C.
+// Half-open range of the sample sequence. Two parts A..B and B..C, averaged with their counts as weights, are the
+// render A..C to the rounding of their floats; their sums (RenderResult::sum) are it to the bit.
 struct SampleRange {
   std::uint32_t first = 0, last = 64;
 };
@@ -81,9 +81,12 @@ struct RayCounts {
   std::uint64_t rounded = 0;
 };
 
+struct PictureSum;  // the program's (src/image/picture_sum.h)
+
 struct RenderResult {
   Picture picture;
-  SampleRange samples;  // what was rendered: shorter than asked for if stopped
+  std::shared_ptr<const PictureSum> sum;  // of which `picture` is the mean
+  SampleRange samples;                    // what was rendered: shorter than asked for if stopped
   RayCounts rays;
   double seconds = 0;
 };
