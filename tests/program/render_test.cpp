@@ -40,6 +40,21 @@ TEST(Render, says_which_radius_it_chose) {
   EXPECT_THAT(run.err, HasSubstr("automatic"));
 }
 
+TEST(Render, says_which_radii_are_automatic) {
+  const Workplace place;
+  const auto report = [&](const std::string& second_round) {
+    test::write_text(place / "two.toml",
+                     "[[object]]\nfile = \"cube.stl\"\nround = 0.1\n"
+                     "[[object]]\nfile = \"cube.stl\"\ntranslate = [4, 0, 0]\nround = " +
+                         second_round + "\n");
+    return place.arris("render two.toml -o a.png --size 64x36 --spp 1").err;
+  };
+  EXPECT_THAT(report("0.2"), HasSubstr("radii 0.1 to 0.2\n"));
+  EXPECT_THAT(report("{ method = \"shader\", delta = 0.2 }"), HasSubstr("radius 0.1\n"));
+  EXPECT_THAT(report("\"auto\""),
+              HasSubstr(" (automatic for 1 of 2 objects; --round R sets it for all)\n"));
+}
+
 TEST(Render, every_format_holds_the_picture) {
   const Workplace place;
   for (const char* name : {"a.png", "a.jpg", "a.exr", "a.pfm"}) {
