@@ -41,7 +41,8 @@ CommandRow render_row() {
       "make a picture of a model or scene",
       "A bare model (STL, OBJ, PLY, OFF, glTF) is staged: framed, put on a soft ground, lit as in "
       "a studio, its "
-      "edges rounded. A scene file (.toml) is rendered as it says. Ctrl-C ends the render early "
+      "edges rounded. A scene file (.toml) is rendered as it says. INPUT may be - for stdin: its "
+      "format is told by its content. Ctrl-C ends the render early "
       "and keeps "
       "the picture of the samples made so far (exit code 1); a second Ctrl-C ends the program.",
       {{"Output",
@@ -87,6 +88,7 @@ CommandRow render_row() {
        {"arris render part.glb -o part.png --size 512x512 --time 10", "ten seconds' work"},
        {"arris render part.obj -o a.exr --samples 0..512",
         "the first half of a render on two machines"}},
+       {"zcat part.stl.gz | arris render - -o part.png", "a model through a pipe"},
       run_render};
 }
 
@@ -98,7 +100,7 @@ CommandRow info_row() {
           "say what is in a model or scene",
           "Prints for each object its triangles, its edges by kind, whether it is closed and "
           "convex, and what "
-          "rounding would do with it.",
+          "rounding would do with it. INPUT may be - for stdin.",
           {rounding_group("auto for bare models"),
            {"Output",
             {{"--json", "", "as JSON, with all digits"},
@@ -122,7 +124,9 @@ CommandRow shoot_row() {
       "position, unit "
       "normal outward from the solid, object, feature (face, edge, corner), and inside: the ray "
       "started in "
-      "the solid, so that t is where it leaves.",
+      "the solid, so that t is where it leaves. All 17 digits count on flat faces; rounded edges "
+      "and corners are met in single precision, about seven digits of the scene's size. INPUT may "
+      "be - for stdin.",
       {{"Rays", {{"--rays", "FILE", "file of rays; - reads stdin (required)"}}},
        rounding_group("none for bare models"),
        {"Running",

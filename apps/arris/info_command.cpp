@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <filesystem>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
@@ -10,7 +9,7 @@
 #include "arris/command_line.h"
 #include "arris/commands.h"
 #include "arris/console.h"
-#include "arris/io.h"
+#include "arris/input.h"
 #include "arris/render.h"
 #include "arris/values.h"
 
@@ -118,11 +117,12 @@ int run_info(const Arguments& arguments) {
   const std::string& input = arguments.positionals[0];
   const int threads = threads_of(arguments);
   with_rounding_options({}, arguments);  // bad values before long loading
-  Scene scene = load_scene(input);
+  Input loaded = load_input(input);
+  Scene& scene = loaded.scene;
   Console console(arguments);
   for (const std::string& note : scene.notes) console.report(note);
   // As render does: bare models are rounded, scene files say what they want.
-  if (!scene.rounding && std::filesystem::path(input).extension() != ".toml") {
+  if (!scene.rounding && !loaded.is_scene_file) {
     RoundingSettings automatic;
     automatic.method = RoundMethod::exact;
     scene.rounding = automatic;
@@ -134,7 +134,7 @@ int run_info(const Arguments& arguments) {
   if (arguments.has("--json")) {
     print_json(findings);
   } else {
-    print_report(findings, input);
+    print_report(findings, input == "-" ? "stdin" : input);
   }
   return 0;
 }

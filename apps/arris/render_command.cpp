@@ -8,6 +8,7 @@
 #include "arris/commands.h"
 #include "arris/console.h"
 #include "arris/error.h"
+#include "arris/input.h"
 #include "arris/io.h"
 #include "arris/render_job.h"
 #include "arris/render_request.h"
@@ -55,10 +56,10 @@ void write_picture(const RenderRequest& request, const JobResult& result, double
     write_stdout(encode_picture(mean_picture(result.sum), PictureFormat::png, options));
     return;
   }
-}
   const bool is_part = request.is_part || (!result.complete && request.time_limit_seconds == 0);
   const bool keep_sum = is_part && picture_format(request.output) == PictureFormat::exr;
   save_picture(keep_sum ? pack_sum(result.sum) : mean_picture(result.sum), request.output, options);
+}
 
 void write_stats(const std::string& path, const RenderStats& stats) {
   const std::string text = stats_json(stats);
@@ -114,17 +115,18 @@ void report_result(Console& console, const RenderRequest& request, const JobResu
 
 int run_render(const Arguments& arguments) {
   if (arguments.find("--material") == "list") return print_materials();
-  const RenderRequest request = make_render_request(arguments);
+  RenderRequest request = make_render_request(arguments);
   Console console(arguments);
   const std::atomic<bool>& stop = catch_stop_signals();
   RenderStats stats;
 
   const Stopwatch load;
-  Scene loaded = load_scene(request.input);
-  const StagingReport staging = apply_request(loaded, request, arguments);
+  Input loaded = load_input(request.input);
+  if (loaded.is_scene_file) request.stage.source = StageOptions::Source::scene_file;
+  const StagingReport staging = apply_request(loaded.scene, request, arguments);
   stats.load_seconds = load.seconds();
 
-  const auto prepared = prepare_scene(std::move(loaded), {.threads = request.threads});
+  const auto prepared = prepare_scene(std::move(loaded.scene), {.threads = request.threads});
   const Scene& scene = scene_of(*prepared);
   stats.prepare = prepare_stats(*prepared);
   stats.prepare.triangles -= staging.ground_triangles;

@@ -14,7 +14,7 @@
 namespace arris::program {
 
 struct RenderRequest {
-  std::filesystem::path input;
+  std::string input;   // "-": stdin
   std::string output;  // "-": PNG to stdout
   std::optional<std::string> stats;
   std::optional<std::filesystem::path> checkpoint;
