@@ -26,7 +26,7 @@ struct PrepareOptions {
 };
 
 class PreparedScene;
-// Throws Error with every problem of validate_scene() and of the rounding.
+// Throws Error with every problem of validate_scene(), or the first one of the rounding.
 std::shared_ptr<const PreparedScene> prepare_scene(Scene scene, const PrepareOptions& options = {});
 // The same scene with another default rounding: only the rounding is built, meshes and their acceleration structure
 // are shared (but with bevel meshes, before or after). Objects with settings of their own keep them.
