@@ -163,7 +163,9 @@ Arguments parse_arguments(const CommandRow& command, const std::vector<std::stri
     if (option->count() == 0) continue;
     arguments.options[name] = values.contains(name) ? values[name] : "true";
   }
-  if (!arguments.has("--help")) check_argument_count(command, arguments.positionals);
+  // Both only print.
+  const bool needs_input = !arguments.has("--help") && arguments.find("--material") != "list";
+  if (needs_input) check_argument_count(command, arguments.positionals);
   return arguments;
 }
 

@@ -15,21 +15,23 @@ OptionGroup rounding_group(const std::string& default_radius) {
         "fits); auto: large enough to be seen, small enough for the part (default: " +
             default_radius + ", what the file says for scenes)"},
        {"--round-edges", "convex|concave|both",
-        "which edges (default: convex); concave ones stay sharp in this version, and a note says "
+        "which edges (default: the file's, else convex); concave ones stay sharp in this version, "
+        "and a note says "
         "so"},
        {"--round-min-angle", "DEG",
-        "edges that turn by less are part of a smooth surface (default: 30)"},
+        "edges that turn by less are part of a smooth surface (default: the file's, else 30)"},
        {"--round-method", "exact|shader|mesh:N|none",
         "exact: rounded surfaces; shader: bevel shader, normals only; mesh:N: bevel geometry of N "
-        "subdivisions (default: exact)"}}};
+        "subdivisions (default: the file's, else exact)"}}};
 }
 
 OptionGroup camera_group() {
   return {"Camera (without one the model is framed in a three-quarter view)",
           {{"--camera-position", "X,Y,Z", "where the camera is"},
-           {"--camera-target", "X,Y,Z", "what it looks at (default: the middle of the model)"},
+           {"--camera-target", "X,Y,Z",
+            "what it looks at (default: the file's, else the middle of the model)"},
            {"--camera-up", "X,Y,Z", "up in the picture (default: the file's up, Z for most)"},
-           {"--fov", "DEG", "vertical field of view (default: 35)"}}};
+           {"--fov", "DEG", "vertical field of view (default: the file's, else 35)"}}};
 }
 
 CommandRow render_row() {
@@ -52,7 +54,7 @@ CommandRow render_row() {
           "more layers, separated by commas: albedo, normal, depth, object, rounded; part of an "
           ".exr, else "
           "beside the picture as .NAME.pfm"},
-         {"--exposure", "STOPS", "brightness of .png and .jpg (default: 0)"},
+         {"--exposure", "STOPS", "brightness of .png and .jpg (default: the scene's, else 0)"},
          {"--stats", "FILE", "write times, counts and memory as JSON; - for stdout"}}},
        {"Picture",
         {{"--size", "WxH", "in pixels (default: the scene's, else 1280x720)"},
@@ -86,9 +88,9 @@ CommandRow render_row() {
        {"arris render room.toml -o room.exr --spp 1024 --checkpoint room.state.exr",
         "a long render that may be interrupted"},
        {"arris render part.glb -o part.png --size 512x512 --time 10", "ten seconds' work"},
+       {"zcat part.stl.gz | arris render - -o part.png", "a model through a pipe"},
        {"arris render part.obj -o a.exr --samples 0..512",
         "the first half of a render on two machines"}},
-       {"zcat part.stl.gz | arris render - -o part.png", "a model through a pipe"},
       run_render};
 }
 
@@ -152,15 +154,15 @@ CommandRow merge_row() {
           {{"Output",
             {{"-o,--output", "FILE", "the whole picture: .exr, or .png .jpg .pfm (required)"},
              {"--exposure", "STOPS", "brightness of .png and .jpg (default: 0)"},
+             {"--part", "",
+              "the picture is itself a part: keep the sums in it (default: if it lacks samples "
+              "from 0 on)"},
              {"--quiet", "", "print errors only"},
              kHelp}}},
           {{"arris merge a.exr b.exr -o whole.exr", "two halves"}},
           run_merge};
 }
 
-             {"--part", "",
-              "the picture is itself a part: keep the sums in it (default: if it lacks samples "
-              "from 0 on)"},
 CommandRow compare_row() {
   return {"compare",
           "A B",
@@ -176,6 +178,7 @@ CommandRow compare_row() {
             {{"--max-rmse", "X", "exit with 1 if the RMSE is larger"},
              {"--diff", "FILE", "write the FLIP map as a picture, dark: equal, bright: different"},
              {"--json", "", "as JSON"},
+             {"--quiet", "", "print errors only: the exit code is the answer"},
              kHelp}}},
           {{"arris compare out.png reference.png", "four numbers"},
            {"arris compare out.exr reference.exr --max-rmse 0.001", "as a test in a script"}},

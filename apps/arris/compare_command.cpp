@@ -66,10 +66,8 @@ int run_compare(const Arguments& arguments) {
   if (!linear && is_linear_file(path_b)) b = shown(b);
   const ImageDifference difference =
       compare_images(a, b, linear ? ValueEncoding::linear : ValueEncoding::srgb);
-  if (arguments.has("--json")) {
-    print_json(difference);
-  } else {
-    print_difference(difference);
+  if (!arguments.has("--quiet")) {
+    arguments.has("--json") ? print_json(difference) : print_difference(difference);
   }
   if (const auto path = arguments.find("--diff")) {
     SaveOptions options;

@@ -198,8 +198,9 @@ TEST(Usage, scenes_come_through_pipes) {
 }
 
 TEST(Usage, materials_are_listed) {
-  const Outcome run = Workplace().arris("render cube.stl --material list");
-  EXPECT_EQ(run.code, 0);
+  const Outcome run = Workplace().arris("render --material list");
+  EXPECT_EQ(run.code, 0) << run.err;
+  EXPECT_EQ(Workplace().arris("render cube.stl --material list").out, run.out);
   for (const char* name : {"brass", "glass", "clay", "porcelain", "rubber", "steel"}) {
     EXPECT_THAT(run.out, HasSubstr(name));
   }
