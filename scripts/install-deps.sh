@@ -8,8 +8,8 @@ packages=(
   g++ cmake ninja-build ccache git python3
   # checks: clang-tidy, clang-format, libFuzzer and its sanitizers
   clang clang-tidy clang-format libclang-rt-14-dev
-  # ray kernels, threads, SIMD
-  libembree-dev libtbb-dev libhwy-dev
+  # ray kernels, threads
+  libembree-dev libtbb-dev
   # pictures
   libopenexr-dev libpng-dev libturbojpeg0-dev libstb-dev
   # models, scenes, JSON
@@ -18,8 +18,8 @@ packages=(
   libqhull-dev
   # command line, text, log
   libcli11-dev libfmt-dev libspdlog-dev
-  # tests and benchmarks
-  libgtest-dev libgmock-dev librapidcheck-dev libbenchmark-dev
+  # tests
+  libgtest-dev libgmock-dev librapidcheck-dev
 )
 
 missing=()

@@ -186,7 +186,9 @@ Arguments parse_arguments(const CommandRow& command, const std::vector<std::stri
   if (arguments.has("--quiet") && arguments.has("--verbose")) {
     fail("--quiet and --verbose contradict each other; use one of them");
   }
-  if (!arguments.has("--help")) check_argument_count(command, arguments.positionals);
+  // Both only print.
+  const bool needs_input = !arguments.has("--help") && arguments.find("--material") != "list";
+  if (needs_input) check_argument_count(command, arguments.positionals);
   return arguments;
 }
 

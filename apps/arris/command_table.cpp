@@ -15,21 +15,23 @@ OptionGroup rounding_group(const std::string& default_radius) {
         "fits); auto: large enough to be seen, small enough for the part (default: " +
             default_radius + ", what the file says for scenes)"},
        {"--round-edges", "convex|concave|both",
-        "which edges (default: convex); concave ones stay sharp in this version, and a note says "
+        "which edges (default: the file's, else convex); concave ones stay sharp in this version, "
+        "and a note says "
         "so"},
        {"--round-min-angle", "DEG",
-        "edges that turn by less are part of a smooth surface (default: 30)"},
+        "edges that turn by less are part of a smooth surface (default: the file's, else 30)"},
        {"--round-method", "exact|shader|mesh:N|none",
         "exact: rounded surfaces; shader: bevel shader, normals only; mesh:N: bevel geometry of N "
-        "subdivisions (default: exact)"}}};
+        "subdivisions (default: the file's, else exact)"}}};
 }
 
 OptionGroup camera_group() {
   return {"Camera (without one the model is framed in a three-quarter view)",
           {{"--camera-position", "X,Y,Z", "where the camera is"},
-           {"--camera-target", "X,Y,Z", "what it looks at (default: the middle of the model)"},
+           {"--camera-target", "X,Y,Z",
+            "what it looks at (default: the file's, else the middle of the model)"},
            {"--camera-up", "X,Y,Z", "up in the picture (default: the file's up, Z for most)"},
-           {"--fov", "DEG", "vertical field of view (default: 35)"}}};
+           {"--fov", "DEG", "vertical field of view (default: the file's, else 35)"}}};
 }
 
 CommandRow render_row() {
@@ -41,7 +43,8 @@ CommandRow render_row() {
       "make a picture of a model or scene",
       "A bare model (STL, OBJ, PLY, OFF, glTF) is staged: framed, put on a soft ground, lit as in "
       "a studio, its "
-      "edges rounded. A scene file (.toml) is rendered as it says. Ctrl-C ends the render early "
+      "edges rounded. A scene file (.toml) is rendered as it says. INPUT may be - for stdin: its "
+      "format is told by its content. Ctrl-C ends the render early "
       "and keeps "
       "the picture of the samples made so far, if there are any (exit code 1); a second Ctrl-C "
       "ends "
@@ -53,7 +56,7 @@ CommandRow render_row() {
           "more layers, separated by commas: albedo, normal, depth, object, rounded; part of an "
           ".exr, else "
           "beside the picture as .NAME.pfm"},
-         {"--exposure", "STOPS", "brightness of .png and .jpg (default: 0)"},
+         {"--exposure", "STOPS", "brightness of .png and .jpg (default: the scene's, else 0)"},
          {"--stats", "FILE", "write times, counts and memory as JSON; - for stdout"}}},
        {"Picture",
         {{"--size", "WxH", "in pixels (default: the scene's, else 1280x720)"},
@@ -63,7 +66,8 @@ CommandRow render_row() {
          {"--max-depth", "N", "bounces of light (default: the scene's, else 8)"},
          {"--seed", "N", "another pattern of noise (default: 0)"},
          {"--samples", "A..B",
-          "only these samples of the sequence; arris merge joins such .exr parts"},
+          "only these samples of the sequence; arris merge joins such .exr parts, which hold their "
+          "exact sums besides, to the bytes of the whole"},
          {"--integrator", "path", "how light is computed (default: path)"}}},
        camera_group(),
        {"Staging",
@@ -87,6 +91,7 @@ CommandRow render_row() {
        {"arris render room.toml -o room.exr --spp 1024 --checkpoint room.state.exr",
         "a long render that may be interrupted"},
        {"arris render part.glb -o part.png --size 512x512 --time 10", "ten seconds' work"},
+       {"zcat part.stl.gz | arris render - -o part.png", "a model through a pipe"},
        {"arris render part.obj -o a.exr --samples 0..512",
         "the first half of a render on two machines"}},
       run_render};
@@ -100,7 +105,7 @@ CommandRow info_row() {
           "say what is in a model or scene",
           "Prints for each object its triangles, its edges by kind, whether it is closed and "
           "convex, and what "
-          "rounding would do with it.",
+          "rounding would do with it. INPUT may be - for stdin.",
           {rounding_group("auto for bare models"),
            {"Output",
             {{"--json", "", "as JSON, with all digits"},
@@ -124,7 +129,9 @@ CommandRow shoot_row() {
       "position, unit "
       "normal outward from the solid, object, feature (face, edge, corner), and inside: the ray "
       "started in "
-      "the solid, so that t is where it leaves.",
+      "the solid, so that t is where it leaves. All 17 digits count on flat faces; rounded edges "
+      "and corners are met in single precision, about seven digits of the scene's size. INPUT may "
+      "be - for stdin.",
       {{"Rays", {{"--rays", "FILE", "file of rays; - reads stdin (required)"}}},
        rounding_group("none for bare models"),
        {"Running",
@@ -145,10 +152,14 @@ CommandRow merge_row() {
           "join parts of one render",
           "The parts are .exr files that arris render wrote with --samples or that were "
           "interrupted. Parts of "
-          "different scenes, sizes or seeds and parts that share samples are refused.",
+          "different scenes, sizes or seeds and parts that share samples are refused. The picture "
+          "has the bytes of one rendered in one piece.",
           {{"Output",
             {{"-o,--output", "FILE", "the whole picture: .exr, or .png .jpg .pfm (required)"},
              {"--exposure", "STOPS", "brightness of .png and .jpg (default: 0)"},
+             {"--part", "",
+              "the picture is itself a part: keep the sums in it (default: if it lacks samples "
+              "from 0 on)"},
              {"--quiet", "", "print errors only"},
              kHelp}}},
           {{"arris merge a.exr b.exr -o whole.exr", "two halves"}},
@@ -170,6 +181,7 @@ CommandRow compare_row() {
             {{"--max-rmse", "X", "exit with 1 if the RMSE is larger"},
              {"--diff", "FILE", "write the FLIP map as a picture, dark: equal, bright: different"},
              {"--json", "", "as JSON"},
+             {"--quiet", "", "print errors only: the exit code is the answer"},
              kHelp}}},
           {{"arris compare out.png reference.png", "four numbers"},
            {"arris compare out.exr reference.exr --max-rmse 0.001", "as a test in a script"}},

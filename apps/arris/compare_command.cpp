@@ -82,10 +82,8 @@ int run_compare(const Arguments& arguments) {
   const Image a = image(file_a), b = image(file_b);
   const ImageDifference difference = compare_images(a, b, encoding);
   if (diff) save_diff(*diff, a, b);
-  if (arguments.has("--json")) {
-    print_json(difference);
-  } else {
-    print_difference(difference);
+  if (!arguments.has("--quiet")) {
+    arguments.has("--json") ? print_json(difference) : print_difference(difference);
   }
   const bool passes = difference.rmse <= limit && difference.nonfinite_pixels == 0;
   return max_rmse && !passes ? 1 : 0;

@@ -9,10 +9,9 @@
 #include "arris/command_line.h"
 #include "arris/commands.h"
 #include "arris/console.h"
-#include "arris/io.h"
+#include "arris/input.h"
 #include "arris/render.h"
 #include "arris/values.h"
-#include "io/file_kind.h"
 
 namespace arris::program {
 namespace {
@@ -120,11 +119,12 @@ int run_info(const Arguments& arguments) {
   const std::string& input = arguments.positionals[0];
   const int threads = threads_of(arguments);
   with_rounding_options({}, arguments);  // bad values before long loading
-  Scene scene = load_scene(input);
-  check_scene(scene, input);
+  Input loaded = load_input(input);
+  Scene& scene = loaded.scene;
+  check_scene(scene, loaded.name);
   Console console(arguments);
   // As render does: bare models are rounded, scene files say what they want.
-  if (!scene.rounding && !is_scene_file(input)) {
+  if (!scene.rounding && !loaded.is_scene_file) {
     RoundingSettings automatic;
     automatic.method = RoundMethod::exact;
     scene.rounding = automatic;
@@ -138,7 +138,7 @@ int run_info(const Arguments& arguments) {
   if (arguments.has("--json")) {
     print_json(findings);
   } else {
-    print_report(findings, input);
+    print_report(findings, loaded.name);
   }
   return 0;
 }

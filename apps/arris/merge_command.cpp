@@ -36,6 +36,18 @@ std::vector<Part> load_parts(const std::vector<std::string>& names) {
   return parts;
 }
 
+void add_part(PictureSum& sum, const Part& part, Console& console) {
+  const Picture picture = load_picture_file(part.name).picture;
+  const std::uint64_t samples = sample_count(part.part);
+  if (holds_sum(picture)) {
+    add_sum(sum, unpack_sum(picture, samples));
+  } else {
+    console.report(fmt::format(
+        "{}: holds a mean only, as no part; joined to the rounding of its floats", part.name));
+    add_sum(sum, sum_of_mean(picture, samples));
+  }
+}
+
 }  // namespace
 
 int run_merge(const Arguments& arguments) {
@@ -57,18 +69,22 @@ int run_merge(const Arguments& arguments) {
     }
     whole = join_parts(whole, parts.front().name, parts[i].part, parts[i].name);
   }
+  Console console(arguments);
   PictureSum sum;
   for (const Part& part : parts) {
     try {
-      add_picture(sum, load_picture_file(part.name).picture, sample_count(part.part));
+      add_part(sum, part, console);
     } catch (const Error& error) {
       if (!error.where().empty()) throw;
       throw Error(error.kind(), part.name, error.what());
     }
   }
   options.attributes = attributes_of(whole);
-  save_picture(mean_picture(sum), *output, options);
-  Console(arguments).report(fmt::format("{}: samples {}", *output, format_samples(whole.samples)));
+  const bool is_part =
+      arguments.has("--part") || whole.samples.size() > 1 || whole.samples[0].first > 0;
+  const bool keep_sum = is_part && picture_format(*output) == PictureFormat::exr;
+  save_picture(keep_sum ? pack_sum(sum) : mean_picture(sum), *output, options);
+  console.report(fmt::format("{}: samples {}", *output, format_samples(whole.samples)));
   return 0;
 }
 

@@ -8,6 +8,7 @@
 #include "arris/commands.h"
 #include "arris/console.h"
 #include "arris/error.h"
+#include "arris/input.h"
 #include "arris/io.h"
 #include "arris/render_job.h"
 #include "arris/render_request.h"
@@ -52,10 +53,12 @@ void write_picture(const RenderRequest& request, const JobResult& result, double
   options.exposure = exposure;
   options.attributes = attributes_of(result.part);
   if (request.output == "-") {
-    write_stdout(encode_picture(result.picture, PictureFormat::png, options));
-  } else {
-    save_picture(result.picture, request.output, options);
+    write_stdout(encode_picture(mean_picture(result.sum), PictureFormat::png, options));
+    return;
   }
+  const bool is_part = request.is_part || (!result.complete && request.time_limit_seconds == 0);
+  const bool keep_sum = is_part && picture_format(request.output) == PictureFormat::exr;
+  save_picture(keep_sum ? pack_sum(result.sum) : mean_picture(result.sum), request.output, options);
 }
 
 void write_stats(const std::string& path, const RenderStats& stats) {
@@ -113,19 +116,20 @@ void report_result(Console& console, const RenderRequest& request, const JobResu
 
 int run_render(const Arguments& arguments) {
   if (arguments.find("--material") == "list") return print_materials();
-  const RenderRequest request = make_render_request(arguments);
+  RenderRequest request = make_render_request(arguments);
   Console console(arguments);
   const std::atomic<bool>& stop = catch_stop_signals();
   RenderStats stats;
 
   const Stopwatch load;
-  Scene loaded = load_scene(request.input);
-  check_scene(loaded, request.input.string());  // before staging adds what is not the file's
-  const StagingReport staging = apply_request(loaded, request, arguments);
+  Input loaded = load_input(request.input);
+  check_scene(loaded.scene, loaded.name);  // before staging adds what is not the file's
+  if (loaded.is_scene_file) request.stage.source = StageOptions::Source::scene_file;
+  const StagingReport staging = apply_request(loaded.scene, request, arguments);
   stats.load_seconds = load.seconds();
 
   const auto prepared =
-      prepare_scene(std::move(loaded), {.threads = request.threads, .stop = &stop});
+      prepare_scene(std::move(loaded.scene), {.threads = request.threads, .stop = &stop});
   const Scene& scene = scene_of(*prepared);
   stats.prepare = prepare_stats(*prepared);
   stats.prepare.triangles -= staging.ground_triangles;

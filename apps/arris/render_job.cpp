@@ -5,7 +5,6 @@
 
 #include "arris/error.h"
 #include "arris/io.h"
-#include "image/picture_sum.h"
 
 namespace arris::program {
 namespace {
@@ -24,8 +23,7 @@ PictureSum load_checkpoint(const RenderJob& job) {
   const bool fits = part.scene == job.part.scene && part.seed == job.part.seed &&
                     part.integrator == job.part.integrator && part.samples.size() == 1 &&
                     part.samples[0].first == job.options.samples.first &&
-                    part.samples[0].last <= job.options.samples.last &&
-                    samples % kChunkSamples == 0;
+                    part.samples[0].last <= job.options.samples.last;
   if (!fits) {
     throw Error(
         Error::Kind::input, name,
@@ -66,14 +64,13 @@ class Job {
       save_checkpoint_if_due();
     }
     if (job_.checkpoint && unsaved_) save_checkpoint();
-    if (last_.samples > 0) add_picture(sum_, last_.picture, last_.samples);
     if (sum_.samples == 0) {
       throw Error(Error::Kind::failed, "", "stopped before the first sample");
     }
-    result.picture = mean_picture(sum_);
     result.part = job_.part;
     result.part.samples = {{wanted.first, wanted.first + std::uint32_t(sum_.samples)}};
     result.complete = result.part.samples[0].last == wanted.last;
+    result.sum = std::move(sum_);
     result.seconds = seconds_since(begin_);
     return result;
   }
@@ -86,7 +83,7 @@ class Job {
     return late || (options.stop != nullptr && options.stop->load());
   }
 
-  // False if the chunk could not be completed, or is shorter than the others.
+  // False if the chunk could not be completed.
   bool render_chunk(JobResult& result) {
     RenderOptions options = job_.options;
     options.samples = {position_, std::min(options.samples.last, position_ + kChunkSamples)};
@@ -99,20 +96,16 @@ class Job {
     options.on_progress = [&](const Progress& chunk) {
       report_progress(chunk.done * (options.samples.last - options.samples.first));
     };
-    RenderResult chunk = renderer_.render(scene_, options);
+    const RenderResult chunk = renderer_.render(scene_, options);
     result.rays.camera += chunk.rays.camera;
     result.rays.total += chunk.rays.total;
     result.rays.rounded += chunk.rays.rounded;
     const std::uint32_t samples = chunk.samples.last - chunk.samples.first;
-    if (samples < kChunkSamples) {
-      last_ = {std::move(chunk.picture), samples};
-      return false;
-    }
-    add_picture(sum_, chunk.picture, samples);
+    add_sum(sum_, *chunk.sum);
     position_ += samples;
     unsaved_ = true;
     report_progress(0);
-    return true;
+    return chunk.samples.last == options.samples.last;
   }
 
   void report_progress(double samples_of_chunk) const {
@@ -140,11 +133,6 @@ class Job {
     unsaved_ = false;
   }
 
-  struct Rest {
-    Picture picture;
-    std::uint32_t samples = 0;
-  };
-
   const Renderer& renderer_;
   const PreparedScene& scene_;
   const RenderJob& job_;
@@ -152,8 +140,7 @@ class Job {
   Clock::time_point saved_ = begin_;
   bool unsaved_ = false;
   std::uint32_t start_ = 0, position_ = 0;
-  PictureSum sum_;  // of whole chunks
-  Rest last_;       // what a shorter chunk at the end made
+  PictureSum sum_;
 };
 
 }  // namespace

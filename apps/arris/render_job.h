@@ -1,6 +1,6 @@
 // render_job.h — a render in chunks, with a time limit and a checkpoint
-// What       run_job() renders the samples in chunks of kChunkSamples, whatever the options, and adds them up. A
-//            checkpoint holds the sum of whole chunks, so that going on from it gives the same bits.
+// What       run_job() renders the samples in chunks and adds them up. A checkpoint holds the exact sum so far, so
+//            that going on from it gives the same bits.
 // Errors     kind input: a checkpoint of another render; kind failed: stopped before the first sample
 #pragma once
 
@@ -10,6 +10,7 @@
 #include <optional>
 
 #include "arris/render.h"
+#include "image/picture_sum.h"
 #include "io/render_part.h"
 
 namespace arris::program {
@@ -24,7 +25,7 @@ struct RenderJob {
 };
 
 struct JobResult {
-  Picture picture;
+  PictureSum sum;
   RenderPart part;
   RayCounts rays;             // of this run
   double seconds = 0;         // of this run

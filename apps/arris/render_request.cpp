@@ -45,10 +45,8 @@ CameraOptions make_camera_options(const Arguments& arguments) {
   return camera;
 }
 
-StageOptions make_stage_options(const Arguments& arguments, const std::filesystem::path& input) {
+StageOptions make_stage_options(const Arguments& arguments) {
   StageOptions stage;
-  stage.source =
-      is_scene_file(input) ? StageOptions::Source::scene_file : StageOptions::Source::model;
   if (const auto given = find_given(arguments, "--lighting")) {
     constexpr Lighting kLightings[] = {Lighting::studio, Lighting::sky, Lighting::white};
     stage.lighting = kLightings[parse_choice(*given, {"studio", "sky", "white"})];
@@ -144,8 +142,9 @@ RenderRequest make_render_request(const Arguments& arguments) {
   request.output = parse_output(arguments);
   check_integrator(arguments);
   request.aovs = parse_aovs(arguments);
-  request.stage = make_stage_options(arguments, request.input);
+  request.stage = make_stage_options(arguments);
   request.samples = make_samples(arguments);
+  request.is_part = arguments.has("--samples");
   request.threads = threads_of(arguments);
   if (const auto given = find_given(arguments, "--time")) {
     request.time_limit_seconds = parse_real(*given, {0.01, 1e8});

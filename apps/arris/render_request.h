@@ -14,12 +14,13 @@
 namespace arris::program {
 
 struct RenderRequest {
-  std::filesystem::path input;
+  std::string input;   // "-": stdin
   std::string output;  // "-": PNG to stdout
   std::optional<std::string> stats;
   std::optional<std::filesystem::path> checkpoint;
   StageOptions stage;
   std::optional<SampleRange> samples;  // empty: from 0 to the scene's
+  bool is_part = false;                // to be joined with others
   double time_limit_seconds = 0;
   std::uint32_t seed = 0;
   int threads = 0;

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <optional>
 #include <string>
 #include <utility>
 #include <variant>
@@ -13,15 +14,21 @@
 namespace arris::program {
 namespace {
 
-bool has_automatic_radius(const Scene& scene) {
-  const auto is_automatic = [](const RoundingSettings& settings) {
-    return settings.method != RoundMethod::none &&
-           std::holds_alternative<AutoRadius>(settings.radius);
-  };
-  return (scene.rounding && is_automatic(*scene.rounding)) ||
-         std::any_of(scene.objects.begin(), scene.objects.end(), [&](const Object& object) {
-           return object.rounding && is_automatic(*object.rounding);
-         });
+bool is_automatic(const Scene& scene, const RoundingSummary& summary) {
+  const Object& object = scene.objects[summary.object_index];
+  const std::optional<RoundingSettings>& settings =
+      object.rounding ? object.rounding : scene.rounding;
+  return settings && std::holds_alternative<AutoRadius>(settings->radius);
+}
+
+std::string origin_of_radii(const Scene& scene,
+                            const std::vector<const RoundingSummary*>& rounded) {
+  const auto automatic = std::size_t(std::ranges::count_if(
+      rounded, [&](const RoundingSummary* summary) { return is_automatic(scene, *summary); }));
+  if (automatic == 0) return "";
+  if (automatic == rounded.size()) return " (automatic; --round R sets it)";
+  return fmt::format(" (automatic for {} of {} objects; --round R sets it for all)", automatic,
+                     rounded.size());
 }
 
 std::string radii(const std::vector<const RoundingSummary*>& rounded) {
@@ -77,9 +84,9 @@ void report_rounding(Console& console, const Scene& scene, const PrepareStats& s
     if (summary.radius > 0) rounded.push_back(&summary);
   }
   if (!rounded.empty()) {
-    console.report(fmt::format(
-        "rounded {} edges and {} corners, {}{}", stats.rounded_edges, stats.rounded_corners,
-        radii(rounded), has_automatic_radius(scene) ? " (automatic; --round R sets it)" : ""));
+    console.report(fmt::format("rounded {} edges and {} corners, {}{}", stats.rounded_edges,
+                               stats.rounded_corners, radii(rounded),
+                               origin_of_radii(scene, rounded)));
   }
   report_notes(console, stats.rounding);
 }

@@ -12,7 +12,7 @@
 #include "arris/commands.h"
 #include "arris/console.h"
 #include "arris/error.h"
-#include "arris/io.h"
+#include "arris/input.h"
 #include "arris/render.h"
 #include "arris/values.h"
 #include "base/utf8_text.h"
@@ -104,10 +104,15 @@ int run_shoot(const Arguments& arguments) {
       throw Error(Error::Kind::input, *rays, "can't be opened; --rays needs a file of rays or -");
     }
   }
-  Scene scene = load_scene(arguments.positionals[0]);
-  check_scene(scene, arguments.positionals[0]);
-  apply_rounding_options(scene, arguments);
-  const auto prepared = prepare_scene(std::move(scene), {.threads = threads});
+  const std::string& input = arguments.positionals[0];
+  if (input == "-" && *rays == "-") {
+    throw Error(Error::Kind::input, "--rays",
+                "and INPUT can't both be read from stdin; name a file for one of them");
+  }
+  Input loaded = load_input(input);
+  check_scene(loaded.scene, loaded.name);
+  apply_rounding_options(loaded.scene, arguments);
+  const auto prepared = prepare_scene(std::move(loaded.scene), {.threads = threads});
   Console console(arguments);
   for (const std::string& note : scene_of(*prepared).notes) console.report(note);
   if (*rays == "-") {

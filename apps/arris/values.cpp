@@ -7,6 +7,7 @@
 
 #include "arris/command_line.h"
 #include "arris/error.h"
+#include "arris/image.h"
 #include "base/nearest_name.h"
 #include "base/utf8_text.h"
 #include "scene/limits.h"
@@ -119,17 +120,15 @@ Vec3d parse_vector(const Given& given) {
 }
 
 Size parse_size(const Given& given) {
-  constexpr int kLongestSide = 65535;
-  constexpr std::int64_t kMostPixels = std::int64_t(1) << 27;
   const std::vector<std::string> parts = split(given.text, "x");
   const auto width = to_number<int>(parts[0]);
   const auto height = parts.size() == 2 ? to_number<int>(parts[1]) : std::nullopt;
   if (!width || !height) fail(given, "no size; use WIDTHxHEIGHT, such as 1280x720");
-  if (*width < 1 || *height < 1 || *width > kLongestSide || *height > kLongestSide) {
-    fail(given, fmt::format("out of range; use 1 to {} pixels on a side", kLongestSide));
+  if (*width < 1 || *height < 1 || *width > kMaxPictureSide || *height > kMaxPictureSide) {
+    fail(given, fmt::format("out of range; use 1 to {} pixels on a side", kMaxPictureSide));
   }
-  if (std::int64_t(*width) * *height > kMostPixels) {
-    fail(given, fmt::format("too large; use at most {} pixels in all", kMostPixels));
+  if (std::int64_t(*width) * *height > kMaxPicturePixels) {
+    fail(given, fmt::format("too large; use at most {} pixels in all", kMaxPicturePixels));
   }
   return {*width, *height};
 }

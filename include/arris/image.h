@@ -2,10 +2,15 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <string>
 #include <vector>
 
 namespace arris {
+
+// Of files that are read and pictures that are rendered.
+inline constexpr std::int64_t kMaxPictureSide = 65535;
+inline constexpr std::int64_t kMaxPicturePixels = std::int64_t(1) << 27;
 
 // Interleaved float pixels, row 0 at the top. Colour channels are linear and scene-referred.
 struct Image {

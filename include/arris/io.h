@@ -32,9 +32,8 @@ struct SaveOptions {
   std::vector<std::pair<std::string, std::string>> attributes;
 };
 
-// .png .jpg .exr .pfm by extension. Layers go into EXR files as channels "name.R", … and beside other
-// formats as files of their own: out.png → out.albedo.png (normal, depth, … as .pfm values mapped to 0..1 is
-// not done: layers of .png and .jpg are written as .pfm, out.albedo.pfm).
+// .png .jpg .exr .pfm by extension. Layers go into EXR files as channels "name.R", … and beside other formats as
+// files of their own, always .pfm: out.png → out.albedo.pfm.
 void save_picture(const Picture& picture, const std::filesystem::path& path,
                   const SaveOptions& options = {});
 

@@ -31,7 +31,7 @@ struct PrepareOptions {
 };
 
 class PreparedScene;
-// Throws Error with every problem of validate_scene() and of the rounding.
+// Throws Error with every problem of validate_scene(), or the first one of the rounding.
 std::shared_ptr<const PreparedScene> prepare_scene(Scene scene, const PrepareOptions& options = {});
 // The same scene with another default rounding: only the rounding is built, meshes and their acceleration structure
 // are shared (but with bevel meshes, before or after). Objects with settings of their own keep them.
@@ -58,8 +58,8 @@ struct PrepareStats {
 const PrepareStats& prepare_stats(const PreparedScene& prepared);
 const Scene& scene_of(const PreparedScene& prepared);  // with camera and environment filled in
 
-// Half-open range of the sample sequence. Two parts A..B and B..C, averaged with their counts as weights,
-// are the render A..C.
+// Half-open range of the sample sequence. Two parts A..B and B..C, averaged with their counts as weights, are the
+// render A..C to the rounding of their floats; their sums (RenderResult::sum) are it to the bit.
 struct SampleRange {
   std::uint32_t first = 0, last = 64;
 };
@@ -87,9 +87,12 @@ struct RayCounts {
   std::uint64_t rounded = 0;
 };
 
+struct PictureSum;  // the program's (src/image/picture_sum.h)
+
 struct RenderResult {
-  Picture picture;      // 0 x 0 pixels if there are no samples
-  SampleRange samples;  // what was rendered: shorter than asked for if stopped
+  Picture picture;                        // black without samples
+  std::shared_ptr<const PictureSum> sum;  // of which `picture` is the mean
+  SampleRange samples;                    // what was rendered: shorter than asked for if stopped
   RayCounts rays;
   double seconds = 0;
 };

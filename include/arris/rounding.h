@@ -32,7 +32,8 @@ struct MeshView {
   std::span<const Triangle> triangles;
 };
 
-// How a hit finds the rounding near it (paper §3.2 against the index by face; bench/rounding compares).
+// How a hit finds the rounding near it (paper §3.2 against the index by face; bench/rounding compares). The tree
+// answers in resolve() only: is_kept() is false for every hit, and each costs a search of the tree.
 enum class Detection { face_index, kd_tree };
 
 // What to do with a closed convex solid into which a ball of the radius does not fit.
@@ -128,7 +129,8 @@ class Rounding {
   Rounding& operator=(Rounding&&) noexcept;
   ~Rounding();
 
-  // True if the hit is on the rounded solid itself. u, v as in MeshHit.
+  // True if the hit is on the rounded solid itself; with Detection::kd_tree always false, so that resolve()
+  // decides. u, v as in MeshHit.
   [[nodiscard]] bool is_kept(std::uint32_t triangle, double u, double v) const;
 
   // For a hit that need not be kept. A hit from inside (direction along the outward normal) is where the ray
@@ -187,7 +189,7 @@ RadiusLimits find_radius_limits(const MeshView& mesh, double min_angle,
                                 const std::string& name = "");
 
 // Throws Error (kind input, where = `name`) if the radius is not positive or, with TooLarge::error, not smaller
-// than the inradius of a closed convex solid; the message says the largest radius that works.
+// than the inradius of a closed convex solid; the message says one that works.
 Rounding make_rounding(const MeshView& mesh, const RoundingOptions& options,
                        const std::string& name = "");
 

@@ -1,7 +1,6 @@
 // trigonometry.h — short polynomials for hot loops; no library calls, no tables
-// Guarantee  absolute errors below 2e-7 (sine, cosine) and 1e-6 (angles)
-// (tests/base/trigonometry_test.cpp) Source     acos: Abramowitz and Stegun, "Handbook of
-// Mathematical Functions", 4.4.46
+// Guarantee  absolute errors below 3e-7 (sine, cosine) and 1e-6 (angles) (tests/base/trigonometry_test.cpp)
+// Source     acos: Abramowitz and Stegun, "Handbook of Mathematical Functions", 4.4.46
 #pragma once
 
 #include <cmath>

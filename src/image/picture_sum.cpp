@@ -3,94 +3,132 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
+#include <cmath>
 
 #include "arris/error.h"
 
 namespace arris {
 namespace {
 
-enum class Join { mean, nearest, first };
+// A sum has 121 bits with its sign; the first float takes 24 of them and the others, being signed, 25 each.
+constexpr int kParts = 5;
+constexpr const char* kPrefix = "sum.";
+constexpr double kLargestPart = 0x1p57;
 
-Join join_of(const std::string& layer) {
-  if (layer == "depth") return Join::nearest;
-  if (layer == "object") return Join::first;
-  return Join::mean;
+std::string part_name(const std::string& layer, int part) {
+  return fmt::format("{}{}.{}", kPrefix, layer.empty() ? "color" : layer, part);
 }
 
-// A double is the exact sum of three floats (53 bits in 3 x 24).
-constexpr std::array<const char*, 3> kParts{"high", "middle", "low"};
-constexpr const char* kPrefix = "sum";
-
-std::string part_name(const std::string& layer, const char* part) {
-  return fmt::format("{}.{}.{}", kPrefix, layer.empty() ? "color" : layer, part);
+bool is_part(const Layer& layer) {
+  return layer.name.starts_with(kPrefix);
 }
 
-void check_match(const PictureSum& sum, const Picture& picture) {
-  const auto fail = [](const std::string& what) { throw Error(Error::Kind::input, "", what); };
-  const Image& color = picture.color;
-  if (color.width_px != sum.width_px || color.height_px != sum.height_px) {
-    fail(fmt::format("is {} x {} pixels large, the part before {} x {}", color.width_px,
-                     color.height_px, sum.width_px, sum.height_px));
+[[noreturn]] void fail(const std::string& what) {
+  throw Error(Error::Kind::input, "", what);
+}
+
+const Layer* find_layer(const Picture& picture, const std::string& name) {
+  const auto found =
+      std::ranges::find_if(picture.layers, [&](const Layer& layer) { return layer.name == name; });
+  return found == picture.layers.end() ? nullptr : &*found;
+}
+
+void check_match(const PictureSum& sum, const PictureSum& other) {
+  if (other.width_px != sum.width_px || other.height_px != sum.height_px) {
+    fail(fmt::format("is {} x {} pixels large, the part before {} x {}", other.width_px,
+                     other.height_px, sum.width_px, sum.height_px));
   }
-  if (picture.layers.size() + 1 != sum.images.size()) {
-    fail(fmt::format("has {} layers, the part before {}", picture.layers.size(),
+  if (other.images.size() != sum.images.size()) {
+    fail(fmt::format("has {} layers, the part before {}", other.images.size() - 1,
                      sum.images.size() - 1));
   }
 }
 
-const Image& image_of(const Picture& picture, const ImageSum& sum) {
-  if (sum.name.empty()) return picture.color;
-  for (const Layer& layer : picture.layers) {
-    if (layer.name == sum.name && layer.image.channels == sum.channels) return layer.image;
+const ImageSum& find_image(const PictureSum& sum, const ImageSum& like) {
+  for (const ImageSum& image : sum.images) {
+    if (image.name == like.name && image.channels == like.channels) return image;
   }
-  throw Error(Error::Kind::input, "",
-              fmt::format("lacks the layer \"{}\" of the part before", sum.name));
+  fail(fmt::format("lacks the layer \"{}\" of the part before", like.name));
 }
 
-void add_image(ImageSum& sum, const Image& mean, double samples, bool is_first) {
-  const Join join = join_of(sum.name);
+void add_image(ImageSum& sum, const ImageSum& other) {
+  for (std::size_t i = 0; i < sum.sums.size(); ++i) sum.sums[i].add(other.sums[i]);
+  if (sum.join != Join::nearest) return;
   for (std::size_t i = 0; i < sum.values.size(); ++i) {
-    const double value = double(mean.values[i]);
-    double& total = sum.values[i];
-    if (join == Join::mean) {
-      total += value * samples;
-    } else if (is_first) {
-      total = value;
-    } else if (join == Join::nearest && value > 0) {  // 0: nothing was hit
-      total = total > 0 ? std::min(total, value) : value;
+    float& nearest = sum.values[i];
+    const float value = other.values[i];
+    if (value > 0) nearest = nearest > 0 ? std::min(nearest, value) : value;
+  }
+}
+
+Image mean_image(const PictureSum& sum, const ImageSum& in) {
+  Image image(sum.width_px, sum.height_px, in.channels);
+  const double samples = std::max<double>(1, double(sum.samples));
+  for (std::size_t i = 0; i < in.sums.size(); ++i) {
+    image.values[i] = float(in.sums[i].value() / samples);
+  }
+  if (in.join != Join::sum) image.values = in.values;
+  return image;
+}
+
+ImageSum sum_of_image(const std::string& name, const Image& mean, double samples) {
+  ImageSum sum = make_image_sum(name, mean.channels, std::size_t(mean.width_px) * mean.height_px);
+  for (std::size_t i = 0; i < sum.sums.size(); ++i) {
+    const double total = double(mean.values[i]) * samples;
+    if (!(std::abs(total) < kLargestPart)) fail("holds values that are no numbers, or too large");
+    sum.sums[i] = ExactSum::from_units(ExactSum::Units(total / ExactSum::kUnit));
+  }
+  if (sum.join != Join::sum) sum.values = mean.values;
+  return sum;
+}
+
+void unpack_image(const Picture& packed, ImageSum& sum) {
+  std::vector<ExactSum> sums(sum.sums.size());
+  for (int part = 0; part < kParts; ++part) {
+    const Layer* layer = find_layer(packed, part_name(sum.name, part));
+    if (layer == nullptr || layer->image.values.size() != sums.size()) {
+      fail(fmt::format("lacks the layer \"{}\"", part_name(sum.name, part)));
+    }
+    for (std::size_t i = 0; i < sums.size(); ++i) {
+      const auto value = double(layer->image.values[i]);
+      if (!(std::abs(value) < kLargestPart)) {
+        fail(fmt::format("holds sums in the layer \"{}\" that no render makes", layer->name));
+      }
+      sums[i].add(ExactSum::from_units(ExactSum::Units(value / ExactSum::kUnit)));
     }
   }
+  sum.sums = std::move(sums);
 }
 
 }  // namespace
 
-void add_picture(PictureSum& sum, const Picture& mean, std::uint64_t samples) {
-  const bool is_first = sum.images.empty();
-  if (is_first) {
-    sum.width_px = mean.color.width_px;
-    sum.height_px = mean.color.height_px;
-    const auto make = [&](const std::string& name, const Image& image) {
-      sum.images.push_back({name, image.channels, std::vector<double>(image.values.size())});
-    };
-    make("", mean.color);
-    for (const Layer& layer : mean.layers) make(layer.name, layer.image);
+ImageSum make_image_sum(const std::string& name, int channels, std::size_t pixels) {
+  ImageSum sum{name, channels, Join::sum, {}, {}};
+  if (name == "depth") sum.join = Join::nearest;
+  if (name == "object") sum.join = Join::first;
+  const std::size_t values = pixels * std::size_t(channels);
+  if (sum.join == Join::sum) {
+    sum.sums.resize(values);
+  } else {
+    sum.values.resize(values);
   }
-  check_match(sum, mean);
-  for (ImageSum& image : sum.images) {
-    add_image(image, image_of(mean, image), double(samples), is_first);
+  return sum;
+}
+
+void add_sum(PictureSum& sum, const PictureSum& other) {
+  if (sum.images.empty()) {
+    sum = other;
+    return;
   }
-  sum.samples += samples;
+  check_match(sum, other);
+  for (ImageSum& image : sum.images) add_image(image, find_image(other, image));
+  sum.samples += other.samples;
 }
 
 Picture mean_picture(const PictureSum& sum) {
   Picture picture;
   for (const ImageSum& in : sum.images) {
-    Image image(sum.width_px, sum.height_px, in.channels);
-    const double divisor = join_of(in.name) == Join::mean ? double(sum.samples) : 1;
-    for (std::size_t i = 0; i < in.values.size(); ++i) {
-      image.values[i] = float(in.values[i] / divisor);
-    }
+    Image image = mean_image(sum, in);
     if (in.name.empty()) {
       picture.color = std::move(image);
     } else {
@@ -100,15 +138,27 @@ Picture mean_picture(const PictureSum& sum) {
   return picture;
 }
 
+PictureSum sum_of_mean(const Picture& mean, std::uint64_t samples) {
+  PictureSum sum{mean.color.width_px, mean.color.height_px, samples, {}};
+  sum.images.push_back(sum_of_image("", mean.color, double(samples)));
+  for (const Layer& layer : mean.layers) {
+    if (!is_part(layer))
+      sum.images.push_back(sum_of_image(layer.name, layer.image, double(samples)));
+  }
+  return sum;
+}
+
 Picture pack_sum(const PictureSum& sum) {
   Picture packed = mean_picture(sum);
   for (const ImageSum& in : sum.images) {
-    std::vector<double> rest = in.values;
-    for (const char* part : kParts) {
+    if (in.join != Join::sum) continue;
+    std::vector<ExactSum> rest = in.sums;
+    for (int part = 0; part < kParts; ++part) {
       Image image(sum.width_px, sum.height_px, in.channels);
       for (std::size_t i = 0; i < rest.size(); ++i) {
-        image.values[i] = float(rest[i]);
-        rest[i] -= double(image.values[i]);
+        const auto units = float(rest[i].units());
+        image.values[i] = units * float(ExactSum::kUnit);
+        rest[i].add(ExactSum::from_units(-ExactSum::Units(units)));
       }
       packed.layers.push_back({part_name(in.name, part), std::move(image)});
     }
@@ -116,31 +166,14 @@ Picture pack_sum(const PictureSum& sum) {
   return packed;
 }
 
+bool holds_sum(const Picture& picture) {
+  return std::ranges::any_of(picture.layers, is_part);
+}
+
 PictureSum unpack_sum(const Picture& packed, std::uint64_t samples) {
-  PictureSum sum{packed.color.width_px, packed.color.height_px, samples, {}};
-  const auto find = [&](const std::string& name) -> const Image* {
-    for (const Layer& layer : packed.layers) {
-      if (layer.name == name) return &layer.image;
-    }
-    return nullptr;
-  };
-  const auto unpack = [&](const std::string& name) {
-    ImageSum image{name, 0, {}};
-    for (const char* part : kParts) {
-      const Image* in = find(part_name(name, part));
-      if (in == nullptr) {
-        throw Error(Error::Kind::input, "",
-                    fmt::format("lacks the layer \"{}\"", part_name(name, part)));
-      }
-      image.channels = in->channels;
-      image.values.resize(in->values.size());
-      for (std::size_t i = 0; i < in->values.size(); ++i) image.values[i] += double(in->values[i]);
-    }
-    sum.images.push_back(std::move(image));
-  };
-  unpack("");
-  for (const Layer& layer : packed.layers) {
-    if (!layer.name.starts_with(fmt::format("{}.", kPrefix))) unpack(layer.name);
+  PictureSum sum = sum_of_mean(packed, samples);
+  for (ImageSum& image : sum.images) {
+    if (image.join == Join::sum) unpack_image(packed, image);
   }
   return sum;
 }

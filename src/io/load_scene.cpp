@@ -14,6 +14,7 @@
 #include "io/gltf_buffers.h"
 #include "io/gltf_reader.h"
 #include "io/mesh_readers.h"
+#include "io/scene_bytes.h"
 #include "io/toml_scene.h"
 
 namespace arris {
@@ -60,6 +61,30 @@ std::string join(const std::vector<std::string>& words) {
   return joined;
 }
 
+// The first line that says something, without the blanks before it.
+std::string_view first_line(std::string_view text) {
+  if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);
+  while (!text.empty()) {
+    const std::size_t end = std::min(text.find_first_of("\r\n"), text.size());
+    std::string_view line = text.substr(0, end);
+    line.remove_prefix(std::min(line.find_first_not_of(" \t"), line.size()));
+    if (!line.empty() && line[0] != '#') return line;
+    text.remove_prefix(std::min(end + 1, text.size()));
+  }
+  return {};
+}
+
+std::string_view find_text_extension(std::string_view text) {
+  const std::string_view line = first_line(text);
+  if (line.starts_with('{')) return ".gltf";
+  if (line.starts_with('[')) return ".toml";
+  const std::string_view word = line.substr(0, line.find_first_of(" \t"));
+  for (const std::string_view keyword : {"v", "vt", "vn", "f", "o", "g", "s", "usemtl", "mtllib"}) {
+    if (word == keyword) return ".obj";  // none is a key of scene files
+  }
+  return line.find('=') == std::string_view::npos ? "" : ".toml";
+}
+
 const Format& format_of(const fs::path& path) {
   const std::string extension = extension_of(path);
   for (const Format& format : kFormats) {
@@ -102,6 +127,28 @@ Scene load_scene(const fs::path& path) {
   if (bytes.empty()) throw Error(Error::Kind::input, file.name, "is empty; a model is needed");
   check_content(format, file);
   return format.read(file);
+}
+
+std::string find_scene_extension(std::span<const std::uint8_t> bytes, const std::string& name) {
+  if (bytes.empty()) throw Error(Error::Kind::input, name, "is empty; a model is needed");
+  for (const Format& format : kFormats) {
+    if (format.recognises != nullptr && format.recognises(bytes)) {
+      return std::string(format.extension);
+    }
+  }
+  const std::string_view extension =
+      find_text_extension({reinterpret_cast<const char*>(bytes.data()), bytes.size()});
+  if (!extension.empty()) return std::string(extension);
+  throw Error(
+      Error::Kind::input, name,
+      "holds no model that Arris knows by its content; give a file whose extension is one of " +
+          join(scene_extensions()));
+}
+
+Scene read_scene(std::span<const std::uint8_t> bytes, const std::string& extension,
+                 const std::string& name) {
+  const fs::path path(name);
+  return format_of(fs::path(name + extension)).read({path, name, bytes});
 }
 
 }  // namespace arris

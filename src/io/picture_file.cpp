@@ -20,7 +20,7 @@
 namespace arris {
 namespace {
 
-constexpr std::uint64_t kMaxPictureBytes = std::uint64_t(4) << 30;
+constexpr std::uint64_t kMaxPictureBytes = kMaxFileBytes;
 
 // ---- 8 and 16 bits to linear
 

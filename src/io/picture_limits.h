@@ -7,10 +7,10 @@
 #include <cstdint>
 #include <string>
 
+#include "arris/image.h"
+
 namespace arris {
 
-inline constexpr std::int64_t kMaxPictureSide = 65535;
-inline constexpr std::int64_t kMaxPicturePixels = std::int64_t(1) << 27;
 // No format here packs a picture tighter: deflate reaches 1,032, JPEG of one colour about 1,500.
 inline constexpr std::int64_t kMaxExpansion = 4096;
 

@@ -44,7 +44,7 @@ RoundingSettings parse_table(const TomlTable& table, const TomlMember& member,
   settings.method = reader.word<RoundMethod>("method", kMethods).value_or(settings.method);
   settings.edges = reader.word<RoundEdges>("edges", kEdges).value_or(settings.edges);
   parse_radius(reader, settings);
-  if (const auto angle = reader.number("min_angle", {0, 180, true})) {
+  if (const auto angle = reader.number("min_angle", {0, 180})) {
     settings.min_angle = radians(*angle);
   }
   settings.subdivisions = reader.integer("subdivisions", 1, 64).value_or(settings.subdivisions);

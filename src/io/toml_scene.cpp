@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 
+#include "arris/image.h"
 #include "io/mesh_scene.h"
 #include "io/toml_scene_parts.h"
 #include "scene/limits.h"
@@ -24,9 +25,13 @@ ImageSettings parse_image(const TomlMember& member, TomlProblems& problems) {
   const TomlTable* table = as_toml_table(member, problems);
   if (table == nullptr) return image;
   TomlTableReader reader(*table, member.value.place, "[image]", problems);
-  if (const auto size = reader.vec2("size", {1, 65536})) {
+  if (const auto size = reader.vec2("size", {1, double(kMaxPictureSide)})) {
     if (size->x != std::floor(size->x) || size->y != std::floor(size->y)) {
       reader.report("size", "must be whole numbers of pixels");
+    }
+    if (size->x * size->y > double(kMaxPicturePixels)) {
+      reader.report("size",
+                    fmt::format("is too large; use at most {} pixels in all", kMaxPicturePixels));
     }
     image.width_px = int(size->x);
     image.height_px = int(size->y);

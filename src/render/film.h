@@ -1,18 +1,19 @@
 // film.h — sums of samples per pixel, and the picture they make
 // What       the colour and the first-hit layers (AOVs) of a render under way
-// Guarantee  sums are double and grow sample by sample, so a picture depends on the samples it holds, not
-//            on how they were grouped in passes, tiles or threads
-// Cost       24 bytes a pixel for the colour and at most as many for each layer; different pixels may be
+// Guarantee  sums are exact, so a picture depends on the samples it holds, not on how they were grouped in passes,
+//            tiles, threads or parts (image/picture_sum.h)
+// Cost       48 bytes a pixel for the colour and at most as many for each layer; different pixels may be
 //            written by different threads. A copy is what a film held at that time.
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
-#include "arris/image.h"
 #include "arris/math.h"
+#include "image/picture_sum.h"
 
 namespace arris {
 
@@ -34,28 +35,20 @@ class Film {
   // Throws Error for a layer name it does not know.
   Film(int width_px, int height_px, const std::vector<std::string>& layers);
 
-  [[nodiscard]] bool has_layers() const { return has_layers_; }
-
-  // The sum so far, to be added to sample by sample.
-  [[nodiscard]] Vec3d& color_sum(std::size_t pixel) { return color_[pixel]; }
   // Call for a pixel's samples in order: "object" is what the first one saw.
-  void add_layers(std::size_t pixel, const FirstHit& first);
+  void add(std::size_t pixel, Rgb radiance, const FirstHit& first);
 
-  // Means over `samples` samples; "normal" and "albedo" count a miss as 0. "depth" is that of the nearest
-  // surface seen, 0 where there is none: so parts of a render can be joined (image/picture_sum.h).
-  [[nodiscard]] Picture picture(std::uint32_t samples,
-                                const std::vector<std::string>& layers) const;
+  // Of `samples` samples. "normal" and "albedo" count a miss as 0; "depth" is that of the nearest surface
+  // seen, 0 where there is none. The film is empty afterwards.
+  [[nodiscard]] PictureSum take_sum(std::uint32_t samples);
 
  private:
-  [[nodiscard]] Image layer(const std::string& name, double scale) const;
+  void add_layers(std::size_t pixel, const FirstHit& first);
 
-  int width_px_, height_px_;
-  bool has_layers_;
-  std::vector<Vec3d> color_;
-  std::vector<Vec3d> albedo_, normal_;  // empty unless asked for
-  std::vector<double> rounded_;
-  std::vector<float> depth_;  // 0: nothing hit
-  std::vector<std::uint32_t> object_;
+  using Layer = std::optional<std::size_t>;  // index of sum_.images, if asked for
+
+  PictureSum sum_;  // the colour first
+  Layer albedo_, normal_, depth_, object_, rounded_;
   std::vector<std::uint8_t> object_known_;
 };
 

@@ -71,15 +71,10 @@ PathRays render_tile(const Job& job, Tile tile, SampleRange samples, Film& film)
       continue;
     }
     const std::size_t pixel = std::size_t(y) * std::size_t(job.image.width_px) + std::size_t(x);
-    Vec3d sum = film.color_sum(pixel);
     for (std::uint32_t sample = samples.first; sample < samples.last; ++sample) {
       const PathSample result = render_sample(job, x, y, sample, rays);
-      sum += Vec3d(result.radiance);
-      if (film.has_layers()) {
-        film.add_layers(pixel, result.first);
-      }
+      film.add(pixel, result.radiance, result.first);
     }
-    film.color_sum(pixel) = sum;
   }
   return rays;
 }
@@ -143,7 +138,8 @@ class PathRenderer final : public Renderer {
     const std::uint32_t count = result.samples.last - result.samples.first;
     result.rays.camera =
         std::uint64_t(count) * std::uint64_t(image.width_px) * std::uint64_t(image.height_px);
-    if (count > 0) result.picture = film.picture(count, options.aovs);
+    result.sum = std::make_shared<const PictureSum>(film.take_sum(count));
+    result.picture = mean_picture(*result.sum);
     result.seconds = passes.elapsed_seconds();
     return result;
   }

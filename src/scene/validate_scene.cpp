@@ -17,7 +17,6 @@
 namespace arris {
 namespace {
 
-constexpr int kMaxSide = 65536;                      // pixels
 constexpr std::uint64_t kMaxTriangles = 1ULL << 31;  // of one mesh
 
 using Problems = std::vector<std::string>;
@@ -163,10 +162,10 @@ void check_material(const Scene& scene, std::size_t index, Problems& problems) {
 void check_texture(const Texture& texture, std::size_t index, Problems& problems) {
   const std::string where = texture.name.empty() ? fmt::format("texture {}", index)
                                                  : fmt::format("texture \"{}\"", texture.name);
-  if (texture.width_px < 1 || texture.height_px < 1 || texture.width_px > kMaxSide ||
-      texture.height_px > kMaxSide) {
+  if (texture.width_px < 1 || texture.height_px < 1 || texture.width_px > kMaxPictureSide ||
+      texture.height_px > kMaxPictureSide) {
     problems.push_back(fmt::format("{}: size {}x{}; sides must be from 1 to {} pixels", where,
-                                   texture.width_px, texture.height_px, kMaxSide));
+                                   texture.width_px, texture.height_px, kMaxPictureSide));
   } else if (texture.texels.size() !=
              std::size_t(texture.width_px) * std::size_t(texture.height_px)) {
     problems.push_back(fmt::format("{}: {} texels for {}x{} pixels", where, texture.texels.size(),
@@ -399,10 +398,10 @@ void check_camera(const Camera& camera, Problems& problems) {
 }
 
 void check_image(const ImageSettings& image, Problems& problems) {
-  if (image.width_px < 1 || image.height_px < 1 || image.width_px > kMaxSide ||
-      image.height_px > kMaxSide) {
+  if (image.width_px < 1 || image.height_px < 1 || image.width_px > kMaxPictureSide ||
+      image.height_px > kMaxPictureSide) {
     problems.push_back(fmt::format("image: size {}x{}; sides must be from 1 to {} pixels",
-                                   image.width_px, image.height_px, kMaxSide));
+                                   image.width_px, image.height_px, kMaxPictureSide));
   }
   check_range("image", "samples per pixel", image.samples_per_pixel, 1, kMostSamples, problems);
   check_range("image", "max_depth", image.max_depth, 0, 1024, problems);

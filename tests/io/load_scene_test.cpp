@@ -6,6 +6,7 @@
 #include "arris/io.h"
 #include "base/nearest_name.h"
 #include "io/file_bytes.h"
+#include "io/scene_bytes.h"
 #include "support/cut_every_byte.h"
 #include "support/error_message.h"
 #include "support/mesh_checks.h"
@@ -86,6 +87,36 @@ TEST_F(LoadScene, finds_the_libraries_and_pictures_beside_a_model) {
   write("pictures.mtl", "newmtl red\nmap_Kd bad.png\n");
   write("bad.png", "no picture");
   EXPECT_THAT(message_of(write("d.obj", "mtllib pictures.mtl\n" + kObj)), HasSubstr("bad.png"));
+}
+
+TEST(SceneBytes, are_told_apart_by_their_content) {
+  const auto extension = [](const std::string& text) {
+    return find_scene_extension(test::bytes_of(text), "stdin");
+  };
+  EXPECT_EQ(extension(kStl), ".stl");
+  EXPECT_EQ(extension(kPly), ".ply");
+  EXPECT_EQ(extension(kOff), ".off");
+  EXPECT_EQ(extension(kObj), ".obj");
+  EXPECT_EQ(extension("\xEF\xBB\xBF# a comment\r\n\r\n  mtllib a = b.mtl\n"), ".obj");
+  EXPECT_EQ(extension("# a comment\r\n\r\n  o part\n" + kObj), ".obj");
+  EXPECT_EQ(extension(std::string("glTF\x02\0\0\0", 8) + std::string(20, '\0')), ".glb");
+  EXPECT_EQ(extension("\n {\n\"asset\": {}}"), ".gltf");
+  EXPECT_EQ(extension("# a scene\n[image]\nsize = [4, 4]\n"), ".toml");
+  EXPECT_EQ(extension("round=0.5\n"), ".toml");
+  EXPECT_THAT(test::error_message(extension, "hello there"),
+              HasSubstr("holds no model that Arris knows"));
+  EXPECT_THAT(test::error_message(extension, ""), HasSubstr("is empty"));
+}
+
+TEST(SceneBytes, become_the_scene_of_a_file) {
+  const Scene scene = read_scene(test::bytes_of(kObj), ".obj", "stdin");
+  ASSERT_EQ(scene.objects.size(), 1U);
+  EXPECT_EQ(scene.objects[0].name, "stdin");
+  EXPECT_THAT(
+      test::error_message(
+          [](const std::string& text) { return read_scene(test::bytes_of(text), ".obj", "stdin"); },
+          "v x\n"),
+      HasSubstr("stdin:1"));
 }
 
 TEST(NearestName, finds_mistyped_ones_only) {

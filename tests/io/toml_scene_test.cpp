@@ -452,10 +452,28 @@ file = "gone.stl"
                                            "s.toml:7:13", "s.toml:8:12", "s.toml:9:7",
                                            "s.toml:12:9", "s.toml:14:8", "s.toml:15:1"));
   EXPECT_THAT(text,
-              AllOf(HasSubstr("[image] size: is 0; use 1 to 65536"),
+              AllOf(HasSubstr("[image] size: is 0; use 1 to 65535"),
                     HasSubstr("must be a whole number"), HasSubstr("roughness: is 2; use 0 to 1"),
                     HasSubstr("not a boolean"), HasSubstr("flattens the object"),
                     HasSubstr("no such file"), HasSubstr("give either \"file\" or \"shape\"")));
+}
+
+TEST(TomlScene, picture_sizes_have_the_limits_of_the_command_line) {
+  EXPECT_EQ(read("[image]\nsize = [65535, 2]\n" + kBox).image.width_px, 65535);
+  EXPECT_THAT(refusal("[image]\nsize = [65536, 1]\n" + kBox), HasSubstr("use 1 to 65535"));
+  EXPECT_THAT(refusal("[image]\nsize = [65535, 65535]\n" + kBox),
+              HasSubstr("use at most 134217728 pixels in all"));
+}
+
+TEST(TomlScene, reads_short_forms_of_the_scenes_rounding) {
+  EXPECT_EQ(std::get<double>(read("round = 0.25\n" + kBox).rounding->radius), 0.25);
+  EXPECT_EQ(std::get<PercentOfInradius>(read("round = \"8%\"\n" + kBox).rounding->radius).percent,
+            8);
+}
+
+TEST(TomlScene, takes_a_minimum_angle_of_zero) {
+  EXPECT_EQ(read("[round]\nmin_angle = 0\n" + kBox).rounding->min_angle, 0);
+  EXPECT_THAT(refusal("[round]\nmin_angle = -1\n" + kBox), HasSubstr("use 0 to 180"));
 }
 
 TEST(TomlScene, refuses_what_contradicts_itself) {

@@ -214,6 +214,15 @@ TEST(Compare, exit_code_1_past_the_limit_only) {
   EXPECT_EQ(place.arris("compare a.exr a.exr --max-rmse 0").code, 0);
 }
 
+TEST(Compare, quiet_answers_by_its_exit_code_alone) {
+  const Workplace place;
+  save_grey(place / "a.exr", 0.5F);
+  save_grey(place / "b.exr", 0.75F);
+  const Outcome run = place.arris("compare a.exr b.exr --max-rmse 0.1 --quiet");
+  EXPECT_EQ(run.code, 1);
+  EXPECT_EQ(run.out + run.err, "");
+}
+
 TEST(Compare, writes_the_difference_as_a_picture) {
   const Workplace place;
   save_grey(place / "a.png", 0.2F);

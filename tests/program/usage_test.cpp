@@ -147,6 +147,8 @@ INSTANTIATE_TEST_SUITE_P(
                "--round-method: \"none\" contradicts --round 0.5; leave one of them out\n"},
         Misuse{"info cube.stl --round none --round-method mesh:3",
                "--round-method: \"mesh:3\" contradicts --round none; leave one of them out\n"},
+        Misuse{"shoot - --rays -", "--rays: and INPUT can't both be read from stdin"},
+        Misuse{"info - < /dev/null", "stdin: is empty; a model is needed\n"},
         Misuse{"shoot cube.stl", "arris shoot needs rays: --rays FILE"},
         Misuse{"shoot cube.stl --rays none.txt", "none.txt: can't be opened"},
         Misuse{"merge a.exr", "arris merge needs an output file: -o whole.exr\n"},
@@ -281,9 +283,32 @@ TEST(Usage, more_threads_than_processors_are_no_matter) {
   }
 }
 
+TEST(Usage, models_come_through_pipes) {
+  const Workplace place;
+  const std::string options = " --size 16x12 --spp 1 --quiet";
+  ASSERT_EQ(place.arris("render cube.stl -o file.png" + options).code, 0);
+  const Outcome run = place.shell("arris render - -o pipe.png" + options + " < cube.stl");
+  EXPECT_EQ(run.code, 0) << run.err;
+  EXPECT_TRUE(place.read("pipe.png") == place.read("file.png"));
+  EXPECT_THAT(place.shell("arris info - < cube.stl").out, HasSubstr("stdin: 12 triangles"));
+  EXPECT_EQ(
+      place.shell("echo '1 1 9 0 0 -1' > rays.txt; arris shoot - --rays rays.txt < cube.stl").code,
+      0);
+}
+
+TEST(Usage, scenes_come_through_pipes) {
+  const Workplace place;
+  test::write_text(place / "scene.toml", "round = 0.1\n[[object]]\nfile = \"cube.stl\"\n");
+  EXPECT_THAT(place.shell("arris info - < scene.toml").out, HasSubstr("radius 0.1: 12 edges"));
+  const Outcome run = place.shell("echo 'what is this' | arris info -");
+  EXPECT_EQ(run.code, 2);
+  EXPECT_THAT(run.err, HasSubstr("stdin: holds no model that Arris knows by its content"));
+}
+
 TEST(Usage, materials_are_listed) {
-  const Outcome run = Workplace().arris("render cube.stl --material list");
-  EXPECT_EQ(run.code, 0);
+  const Outcome run = Workplace().arris("render --material list");
+  EXPECT_EQ(run.code, 0) << run.err;
+  EXPECT_EQ(Workplace().arris("render cube.stl --material list").out, run.out);
   for (const char* name : {"brass", "glass", "clay", "porcelain", "rubber", "steel"}) {
     EXPECT_THAT(run.out, HasSubstr(name));
   }
