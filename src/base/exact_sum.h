@@ -26,13 +26,15 @@ class ExactSum {
   void add(float sample) {
     units_ += Units(std::clamp(double(sample), -kLargest, kLargest) / kUnit);
   }
-  void add(const ExactSum& other) { units_ += other.units_; }
+  // Wraps round where files hold sums that no render makes.
+  void add(const ExactSum& other) { units_ = Units(Bits(units_) + Bits(other.units_)); }
 
   [[nodiscard]] Units units() const { return units_; }
   [[nodiscard]] double value() const { return double(units_) * kUnit; }
   friend bool operator==(const ExactSum&, const ExactSum&) = default;
 
  private:
+  __extension__ using Bits = unsigned __int128;
   Units units_ = 0;
 };
 

@@ -3,7 +3,7 @@
 //            fastest to trace. Objects that share a big mesh become instances of one BVH. Besides, one
 //            record per geometry with what a hit is evaluated from.
 // Guarantee  robust traversal: no ray passes between two triangles that share an edge
-//            (tests/render/trace_test.cpp). One aimed at the very vertex may: 2 in 1,000 of those do.
+//            (tests/render/trace_test.cpp). One aimed at the very vertex may: up to 3 in 1,000 of those do.
 // Limits     float coordinates: a scene far from its origin loses precision in proportion
 // Errors     Error::failed when memory runs out
 // Cost       build linear in the triangles (times log), parallel; const afterwards

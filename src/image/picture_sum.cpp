@@ -72,7 +72,8 @@ Image mean_image(const PictureSum& sum, const ImageSum& in) {
 }
 
 ImageSum sum_of_image(const std::string& name, const Image& mean, double samples) {
-  ImageSum sum = make_image_sum(name, mean.channels, std::size_t(mean.width_px) * mean.height_px);
+  ImageSum sum =
+      make_image_sum(name, mean.channels, std::size_t(mean.width_px) * std::size_t(mean.height_px));
   for (std::size_t i = 0; i < sum.sums.size(); ++i) {
     const double total = double(mean.values[i]) * samples;
     if (!(std::abs(total) < kLargestPart)) fail("holds values that are no numbers, or too large");

@@ -4,10 +4,11 @@
 //            and arc (k, j) that is one linear function of the barycentrics. It is the trace on the face of the
 //            paper's detection cylinder (§3.1), which by Thales cuts the face in just this band; but a band does not
 //            end at the edge's vertices (why: detection_tree.h).
-// Guarantee  no void point of an exact solid lies outside the bands, but for a depth of 1e-7 of its size
-//            (tests/rounding/oracle_test.cpp)
+// Guarantee  no void point of an exact solid lies outside the bands, but for a depth of 1e-7 of its size and a few
+//            roundings of its coordinates (tests/rounding/bands_test.cpp)
 // Limits     on other solids a band may reach past the end of its edge: resolve() checks
-// Cost       a face's triangles are searched in a tree: about linear in the bands (tests/rounding/bands_test.cpp)
+// Cost       a face's triangles are searched in a tree: about linear in the bands. A triangle of a face with many
+//            holes has no more of them than one of a face with few (tests/rounding/bands_test.cpp).
 #pragma once
 
 #include <cstdint>

@@ -6,7 +6,8 @@
 //            cuts its faces exactly along the bands (bands.h), but beside obtuse corners and at corners of more than
 //            three faces it leaves void points out. So the entries here are boxes of the bands themselves, and
 //            the test is the bands' own.
-// Guarantee  finds what the bands of the hit's triangle find (tests/rounding/oracle_test.cpp)
+// Guarantee  finds what the bands of the hit's triangle find, on exact solids and others
+//            (tests/rounding/bands_test.cpp)
 #pragma once
 
 #include <cstdint>

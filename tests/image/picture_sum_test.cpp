@@ -62,7 +62,7 @@ TEST(PictureSum, packing_loses_nothing) {
   const auto largest = ExactSum::Units(1) << 120;
   sum.images[0].sums[0] = ExactSum::from_units(largest - 1);
   sum.images[0].sums[1] = ExactSum::from_units(1 - largest);
-  sum.images[0].sums[2] = ExactSum::from_units((largest / 3) * 2);
+  sum.images[0].sums[2] = ExactSum::from_units(largest / 3 + largest / 3);
   const Picture packed = pack_sum(sum);
   EXPECT_TRUE(holds_sum(packed));
   const PictureSum read = unpack_sum(packed, sum.samples);

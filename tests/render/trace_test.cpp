@@ -71,7 +71,7 @@ TEST(trace, no_ray_leaves_a_closed_mesh) {
       vertex_leaks += leak(origin, a);
     }
     EXPECT_EQ(leaks, 0) << shift;
-    EXPECT_LE(vertex_leaks, 2000) << shift;  // 1 % of rays aimed at the very vertex
+    EXPECT_LE(vertex_leaks, 600) << shift;  // 3 in 1,000 of the rays aimed at the very vertex
   }
 }
 
@@ -112,7 +112,7 @@ TEST(trace, rays_leave_their_surface_at_any_scale) {
       two.objects[1].world_from_object.translation.y += 1e3 * scale;
       const PreparedScene instanced = prepare_with(two, 0);
       ASSERT_TRUE(instanced.geometry().embree.records()[0].instanced);
-      expect_no_self_intersection(*prepare_scene(scene), Vec3f(place.translation), float(scale));
+      expect_no_self_intersection(instanced, Vec3f(place.translation), float(scale));
     }
   }
 }
@@ -158,17 +158,21 @@ TEST(trace, instances_agree_with_baked_meshes) {
     ASSERT_TRUE(instanced.geometry().embree.records()[1].instanced);
     Random random(4);
     int hits = 0;
+    int one_sided = 0, neighbours = 0;  // by rays that graze or meet an edge
     for (int i = 0; i < 20'000; ++i) {
       const Vec3f origin = Vec3f(place.translation) + 8 * random_direction(random);
       const Vec3f target = Vec3f(place.translation) + 2 * random_direction(random);
       const TraceRay ray = make_trace_ray(origin, normalize(target - origin));
       const auto a = baked.intersect(ray), b = instanced.intersect(ray);
       ASSERT_EQ(baked.occluded(ray), a.has_value());
+      one_sided += a.has_value() != b.has_value() ? 1 : 0;
       if (!a || !b) {
-        continue;  // grazing rays may differ
+        continue;
       }
       ++hits;
-      if (a->triangle != b->triangle || a->object != b->object) {
+      ASSERT_EQ(a->object, b->object);
+      if (a->triangle != b->triangle) {
+        ++neighbours;
         continue;
       }
       const float grazing = std::abs(dot(ray.direction, a->geometric_normal));
@@ -179,6 +183,8 @@ TEST(trace, instances_agree_with_baked_meshes) {
       ASSERT_EQ(b->side, Side::outside);
     }
     EXPECT_GT(hits, 2000);
+    EXPECT_LE(one_sided, 1);
+    EXPECT_LE(neighbours, 4);
   }
 }
 
