@@ -47,16 +47,22 @@ std::optional<float> find_way_out(const SceneGeometry& geometry, const RoundedGe
   return float(exit->t + step);
 }
 
+bool is_left_out(const FilterContext& context, std::uint32_t geometry, std::uint32_t triangle) {
+  if (context.only_geometry == kNoGeometry) return false;
+  return geometry != context.only_geometry ||
+         context.rounding->geometries[geometry].rounding->solid_of(triangle) != context.only_solid;
+}
+
 // Drops hits that the ray passes.
 void filter_passed(const RTCFilterFunctionNArguments* args) {
   if (args->valid[0] != -1) return;
   auto* context = reinterpret_cast<FilterContext*>(args->context);
   const auto* hit = reinterpret_cast<const RTCHit*>(args->hit);
   const auto* query = reinterpret_cast<const RTCRay*>(args->ray);
-  const bool skipped =
-      hit->primID == context->skip_triangle && geometry_of(*hit) == context->skip_geometry;
-  if (skipped || is_departure(*hit, context->ray->from) ||
-      is_rounded_away(*context, *hit, query->tfar)) {
+  const std::uint32_t geometry = geometry_of(*hit);
+  const bool skipped = hit->primID == context->skip_triangle && geometry == context->skip_geometry;
+  if (skipped || is_left_out(*context, geometry, hit->primID) ||
+      is_departure(*hit, context->ray->from) || is_rounded_away(*context, *hit, query->tfar)) {
     args->valid[0] = 0;
   }
 }
@@ -189,6 +195,20 @@ std::optional<SurfaceHit> RoundedTrace::trace_from_void() const {
   return hit;
 }
 
+std::optional<SurfaceHit> RoundedTrace::trace_from_inside() const {
+  const std::optional<Found> own = trace_own_solid();
+  if (!own) {
+    const std::optional<RTCRayHit> first = trace_mesh(geometry_, ray_);
+    return first ? settle(*first) : std::nullopt;
+  }
+  TraceRay before = ray_;
+  before.t_max = own->t();
+  const std::optional<Found> other = trace_filtered(before, &own->query.hit);
+  SurfaceHit hit = finish(other && other->t() < own->t() ? *other : *own);
+  hit.rounding_seen = hit.feature != Feature::face;
+  return hit;
+}
+
 std::optional<SurfaceHit> RoundedTrace::moved(const RTCRayHit& query,
                                               const Verdict& verdict) const {
   const RoundedGeometry& g = rounding_.geometries[geometry_of(query.hit)];
@@ -255,17 +275,32 @@ SurfaceHit RoundedTrace::move_hit(const RTCRayHit& query, const Verdict& verdict
 std::optional<RoundedTrace::Found> RoundedTrace::trace_filtered(const TraceRay& range,
                                                                 const RTCHit* without) const {
   FilterContext context = make_filter_context(geometry_, rounding_, ray_);
-  context.base.filter = filter_passed;
   context.t_max = range.t_max;
   if (without != nullptr) {
     context.skip_geometry = geometry_of(*without);
     context.skip_triangle = without->primID;
   }
+  return search(geometry_, range, context);
+}
+
+std::optional<RoundedTrace::Found> RoundedTrace::trace_own_solid() const {
+  FilterContext context = make_filter_context(geometry_, rounding_, ray_);
+  context.t_max = ray_.t_max;
+  context.only_geometry = ray_.from.geometry;
+  context.only_solid =
+      rounding_.geometries[ray_.from.geometry].rounding->solid_of(ray_.from.triangle);
+  return search(geometry_, ray_, context);
+}
+
+std::optional<RoundedTrace::Found> RoundedTrace::search(const SceneGeometry& geometry,
+                                                        const TraceRay& range,
+                                                        FilterContext& context) {
+  context.base.filter = filter_passed;
   RTCRayHit query;
   query.ray = make_ray(range);
   query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
   query.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
-  rtcIntersect1(geometry_.embree.handle(), &context.base, &query);
+  rtcIntersect1(geometry.embree.handle(), &context.base, &query);
   if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return std::nullopt;
   return Found{query, context.last};
 }

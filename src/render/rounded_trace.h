@@ -79,6 +79,16 @@ inline bool starts_in_void(const TraceRay& ray) {
   return ray.from.feature != Feature::face && ray.from.side == Side::outside;
 }
 
+// In a solid with neighbours: another's surface may coincide with where the ray leaves, or lie beyond it while the rounded
+// edge lies before.
+inline bool starts_inside_among_others(const SceneRounding& rounding, const TraceRay& ray) {
+  if (ray.from.side != Side::inside) return false;
+  const RoundedGeometry& g = rounding.geometries[ray.from.geometry];
+  if (g.neighbors == nullptr) return false;
+  const std::uint32_t solid = g.rounding->solid_of(ray.from.triangle);
+  return solid != kNone && g.neighbors_of(solid, kNone) != VoidNeighbors::none;
+}
+
 // A ray that starts in the void of an exact solid, begun where it has left the mesh, as in the paper. Nothing if it could
 // miss another solid that touches there or reaches into the void.
 std::optional<TraceRay> skip_void(const SceneGeometry& geometry, const SceneRounding& rounding,
@@ -97,6 +107,9 @@ struct FilterContext {
   // A ray that leaves a rounded edge of this closed solid outward: what it meets of it from inside is its void's end.
   std::uint32_t own_geometry = kNoGeometry;
   std::uint32_t own_solid = kNone;
+  // Nothing but this solid counts, if one is given.
+  std::uint32_t only_geometry = kNoGeometry;
+  std::uint32_t only_solid = kNone;
   // Hit already judged, to be dropped.
   std::uint32_t skip_geometry = kNoGeometry;
   std::uint32_t skip_triangle = 0;
@@ -164,11 +177,16 @@ class RoundedTrace {
 
   std::optional<SurfaceHit> settle(RTCRayHit first) const;
   std::optional<SurfaceHit> trace_from_void() const;
+  std::optional<SurfaceHit> trace_from_inside() const;
 
  private:
   struct Found {
     RTCRayHit query;
     Verdict verdict;
+
+    [[nodiscard]] float t() const {
+      return verdict.outcome == Resolution::Outcome::moved ? float(verdict.hit.t) : query.ray.tfar;
+    }
   };
 
   [[nodiscard]] std::optional<SurfaceHit> moved(const RTCRayHit& query,
@@ -183,6 +201,10 @@ class RoundedTrace {
   // Next hit at or behind range.t_min that the ray does not pass, other than `without`.
   [[nodiscard]] std::optional<Found> trace_filtered(const TraceRay& range,
                                                     const RTCHit* without) const;
+  // The same for the solid in which the ray starts alone.
+  [[nodiscard]] std::optional<Found> trace_own_solid() const;
+  [[nodiscard]] static std::optional<Found> search(const SceneGeometry& geometry,
+                                                   const TraceRay& range, FilterContext& context);
 
   const SceneGeometry& geometry_;
   const SceneRounding& rounding_;

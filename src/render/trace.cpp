@@ -68,6 +68,8 @@ std::optional<SurfaceHit> PreparedScene::intersect(const TraceRay& whole) const 
   const TraceRay& ray = beyond ? *beyond : whole;
   if (from_void && !beyond) [[unlikely]] {
     hit = RoundedTrace(*geometry_, rounding_, ray).trace_from_void();
+  } else if (rounding_.any && starts_inside_among_others(rounding_, ray)) [[unlikely]] {
+    hit = RoundedTrace(*geometry_, rounding_, ray).trace_from_inside();
   } else if (const std::optional<RTCRayHit> first = trace_mesh(*geometry_, ray)) {
     const std::uint32_t geometry = geometry_of(first->hit);
     if (!rounding_.any || is_plainly_kept(rounding_.geometries[geometry], ray, first->hit))
