@@ -90,7 +90,7 @@ struct RayCounts {
 struct PictureSum;  // the program's (src/image/picture_sum.h)
 
 struct RenderResult {
-  Picture picture;                        // black without samples
+  Picture picture;                        // 0 x 0 pixels without samples
   std::shared_ptr<const PictureSum> sum;  // of which `picture` is the mean
   SampleRange samples;                    // what was rendered: shorter than asked for if stopped
   RayCounts rays;

@@ -140,9 +140,9 @@ class Rounding {
   [[nodiscard]] Resolution resolve(const Ray& ray, const MeshHit& hit,
                                    RayStart start = RayStart::unknown) const;
 
-  // Where a ray leaves the sharp mesh of an exact solid: the paper's I″. From a place beside an arc (RoundedHit::crossed) at
-  // a t of the ray: nothing if the way out leads past the arc's ends. Cost: linear in the solid's faces, constant with
-  // an arc.
+  // Where a ray leaves the sharp mesh of an exact solid: the paper's I″. From a place beside an arc
+  // (RoundedHit::crossed) at a t of the ray: nothing if the way out leads past the arc's ends. Cost: linear in
+  // the solid's faces, constant with an arc.
   struct Exit {
     double t = 0;
     double cosine = 0;  // between the ray and the outward normal there; > 0

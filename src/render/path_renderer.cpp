@@ -139,7 +139,7 @@ class PathRenderer final : public Renderer {
     result.rays.camera =
         std::uint64_t(count) * std::uint64_t(image.width_px) * std::uint64_t(image.height_px);
     result.sum = std::make_shared<const PictureSum>(film.take_sum(count));
-    result.picture = mean_picture(*result.sum);
+    if (count > 0) result.picture = mean_picture(*result.sum);
     result.seconds = passes.elapsed_seconds();
     return result;
   }

@@ -28,8 +28,8 @@ struct VoidPlace {
   double t;               // of the ray
 };
 
-// Where a ray may begin again beyond the mesh that it leaves: past the rounding errors of that mesh, and before anything
-// that is kVoidMargin away. Nothing if another solid could be met on the way there, or if the ray leaves at so
+// Where a ray may begin again beyond the mesh that it leaves: past the rounding errors of that mesh, and before
+// anything that is kVoidMargin away. Nothing if another solid could be met on the way there, or if the ray leaves at so
 // small an angle that there is no such place.
 std::optional<float> find_way_out(const SceneGeometry& geometry, const RoundedGeometry& g,
                                   const VoidPlace& place, const Ray& local) {

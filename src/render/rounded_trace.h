@@ -5,7 +5,7 @@
 //            touches the object from outside at the very distance where it leaves (the main picture of the
 //            paper, its Fig. 9), with no resume distance and no tolerance. A ray that leaves a rounded edge starts in
 //            the void, where the first hit is always its own solid's back: it is traced with the filter at once.
-//            Where no other solid is near (void_neighbors.h), the void is crossed in one step instead, without a filter.
+//            Where no other solid is near (void_neighbors.h), the void is crossed in one step instead, without filter.
 // Guarantee  never a hole: a solid that is not rounded exactly is passed only where the ray enters and leaves
 //            within what the rounding takes away; elsewhere its face stands
 // Included   by trace.cpp only
@@ -79,8 +79,8 @@ inline bool starts_in_void(const TraceRay& ray) {
   return ray.from.feature != Feature::face && ray.from.side == Side::outside;
 }
 
-// In a solid with neighbours: another's surface may coincide with where the ray leaves, or lie beyond it while the rounded
-// edge lies before.
+// In a solid with neighbours: another's surface may coincide with where the ray leaves, or lie beyond it while the
+// rounded edge lies before.
 inline bool starts_inside_among_others(const SceneRounding& rounding, const TraceRay& ray) {
   if (ray.from.side != Side::inside) return false;
   const RoundedGeometry& g = rounding.geometries[ray.from.geometry];
@@ -89,8 +89,8 @@ inline bool starts_inside_among_others(const SceneRounding& rounding, const Trac
   return solid != kNone && g.neighbors_of(solid, kNone) != VoidNeighbors::none;
 }
 
-// A ray that starts in the void of an exact solid, begun where it has left the mesh, as in the paper. Nothing if it could
-// miss another solid that touches there or reaches into the void.
+// A ray that starts in the void of an exact solid, begun where it has left the mesh, as in the paper. Nothing if it
+// could miss another solid that touches there or reaches into the void.
 std::optional<TraceRay> skip_void(const SceneGeometry& geometry, const SceneRounding& rounding,
                                   const TraceRay& ray);
 

@@ -60,42 +60,42 @@ std::optional<ObjectHit> PreparedScene::intersect_object(const TraceRay& ray,
   return ObjectHit{hit.t, hit.triangle, hit.geometric_normal, hit.shading_normal};
 }
 
-std::optional<SurfaceHit> PreparedScene::intersect(const TraceRay& whole) const {
+std::optional<SurfaceHit> PreparedScene::intersect(const TraceRay& ray) const {
   std::optional<SurfaceHit> hit;
-  const bool from_void = rounding_.any && starts_in_void(whole);
+  const bool from_void = rounding_.any && starts_in_void(ray);
   const std::optional<TraceRay> beyond =
-      from_void ? skip_void(*geometry_, rounding_, whole) : std::nullopt;
-  const TraceRay& ray = beyond ? *beyond : whole;
+      from_void ? skip_void(*geometry_, rounding_, ray) : std::nullopt;
+  const TraceRay& way = beyond ? *beyond : ray;
   if (from_void && !beyond) [[unlikely]] {
-    hit = RoundedTrace(*geometry_, rounding_, ray).trace_from_void();
-  } else if (rounding_.any && starts_inside_among_others(rounding_, ray)) [[unlikely]] {
-    hit = RoundedTrace(*geometry_, rounding_, ray).trace_from_inside();
-  } else if (const std::optional<RTCRayHit> first = trace_mesh(*geometry_, ray)) {
+    hit = RoundedTrace(*geometry_, rounding_, way).trace_from_void();
+  } else if (rounding_.any && starts_inside_among_others(rounding_, way)) [[unlikely]] {
+    hit = RoundedTrace(*geometry_, rounding_, way).trace_from_inside();
+  } else if (const std::optional<RTCRayHit> first = trace_mesh(*geometry_, way)) {
     const std::uint32_t geometry = geometry_of(first->hit);
-    if (!rounding_.any || is_plainly_kept(rounding_.geometries[geometry], ray, first->hit))
+    if (!rounding_.any || is_plainly_kept(rounding_.geometries[geometry], way, first->hit))
         [[likely]] {
-      fill_hit(*geometry_, ray, *first, hit.emplace());
+      fill_hit(*geometry_, way, *first, hit.emplace());
     } else {
-      hit = RoundedTrace(*geometry_, rounding_, ray).settle(*first);
+      hit = RoundedTrace(*geometry_, rounding_, way).settle(*first);
     }
   }
   if (!rounding_.shaders.empty() && hit) [[unlikely]] {
     const BevelShader& shader = rounding_.shaders[hit->geometry];
-    if (shader.delta > 0) bend_normal(*this, shader, ray.direction, *hit);
+    if (shader.delta > 0) bend_normal(*this, shader, way.direction, *hit);
   }
   return hit;
 }
 
-float PreparedScene::transmittance(const TraceRay& whole) const {
-  const std::optional<TraceRay> beyond = rounding_.any && starts_in_void(whole)
-                                             ? skip_void(*geometry_, rounding_, whole)
+float PreparedScene::transmittance(const TraceRay& ray) const {
+  const std::optional<TraceRay> beyond = rounding_.any && starts_in_void(ray)
+                                             ? skip_void(*geometry_, rounding_, ray)
                                              : std::nullopt;
-  const TraceRay& ray = beyond ? *beyond : whole;
-  FilterContext context = make_filter_context(*geometry_, rounding_, ray);
+  const TraceRay& way = beyond ? *beyond : ray;
+  FilterContext context = make_filter_context(*geometry_, rounding_, way);
   if (rounding_.any || geometry_->any_translucent) {
     context.base.filter = filter_shadow;
   }
-  RTCRay query = make_ray(ray);
+  RTCRay query = make_ray(way);
   rtcOccluded1(geometry_->embree.handle(), &context.base, &query);
   return query.tfar < 0 ? 0.0F : context.transmittance;
 }
