@@ -87,9 +87,8 @@ std::optional<SurfaceHit> PreparedScene::intersect(const TraceRay& ray) const {
 }
 
 float PreparedScene::transmittance(const TraceRay& ray) const {
-  const std::optional<TraceRay> beyond = rounding_.any && starts_in_void(ray)
-                                             ? skip_void(*geometry_, rounding_, ray)
-                                             : std::nullopt;
+  const std::optional<TraceRay> beyond =
+      rounding_.any && starts_in_void(ray) ? skip_void(*geometry_, rounding_, ray) : std::nullopt;
   const TraceRay& way = beyond ? *beyond : ray;
   FilterContext context = make_filter_context(*geometry_, rounding_, way);
   if (rounding_.any || geometry_->any_translucent) {

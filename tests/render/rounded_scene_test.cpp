@@ -67,7 +67,7 @@ RoundingSettings rounded_by(double radius) {
 class World {
  public:
   World() {
-    scene_.camera = Camera{.position = {9, 9, 9}};
+    scene_.camera = Camera{.position = {9, 9, 9}, .target = {}};
     scene_.environment = ConstantEnvironment{};
     scene_.materials.emplace_back();
   }
