@@ -24,6 +24,15 @@ OptionGroup rounding_group(const std::string& default_radius) {
         "subdivisions (default: exact)"}}};
 }
 
+OptionGroup input_group() {
+  return {
+      "Input",
+      {{"--facets", "exact|as-written",
+        "round things in OpenSCAD files; exact: true spheres, cylinders and circles, but for those "
+        "with an explicit $fn of 12 or less; as-written: with OpenSCAD's facets (default: "
+        "exact)"}}};
+}
+
 OptionGroup camera_group() {
   return {"Camera (without one the model is framed in a three-quarter view)",
           {{"--camera-position", "X,Y,Z", "where the camera is"},
@@ -39,9 +48,10 @@ CommandRow render_row() {
       1,
       1,
       "make a picture of a model or scene",
-      "A bare model (STL, OBJ, PLY, OFF, glTF) is staged: framed, put on a soft ground, lit as in "
-      "a studio, its "
-      "edges rounded. A scene file (.toml) is rendered as it says. Ctrl-C ends the render early "
+      "A bare model (STL, OBJ, PLY, OFF, glTF, OpenSCAD) is staged: framed, put on a soft ground, "
+      "lit "
+      "as in a studio, its edges rounded. A scene file (.toml) is rendered as it says. Ctrl-C ends "
+      "the render early "
       "and keeps "
       "the picture of the samples made so far (exit code 1); a second Ctrl-C ends the program.",
       {{"Output",
@@ -62,6 +72,7 @@ CommandRow render_row() {
          {"--samples", "A..B",
           "only these samples of the sequence; arris merge joins such .exr parts"},
          {"--integrator", "path", "how light is computed (default: path)"}}},
+       input_group(),
        camera_group(),
        {"Staging",
         {{"--lighting", "studio|sky|white",
@@ -98,7 +109,8 @@ CommandRow info_row() {
           "Prints for each object its triangles, its edges by kind, whether it is closed and "
           "convex, and what "
           "rounding would do with it.",
-          {rounding_group("auto for bare models"),
+          {input_group(),
+           rounding_group("auto for bare models"),
            {"Output",
             {{"--json", "", "as JSON, with all digits"},
              {"--threads", "N", "default: all"},
@@ -123,6 +135,7 @@ CommandRow shoot_row() {
       "started in "
       "the solid, so that t is where it leaves.",
       {{"Rays", {{"--rays", "FILE", "file of rays; - reads stdin (required)"}}},
+       input_group(),
        rounding_group("none for bare models"),
        {"Running",
         {{"--threads", "N", "default: all"},

@@ -118,7 +118,7 @@ int run_info(const Arguments& arguments) {
   const std::string& input = arguments.positionals[0];
   const int threads = threads_of(arguments);
   with_rounding_options({}, arguments);  // bad values before long loading
-  Scene scene = load_scene(input);
+  Scene scene = load_scene(input, load_options_of(arguments));
   Console console(arguments);
   for (const std::string& note : scene.notes) console.report(note);
   // As render does: bare models are rounded, scene files say what they want.

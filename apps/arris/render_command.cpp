@@ -118,7 +118,7 @@ int run_render(const Arguments& arguments) {
   RenderStats stats;
 
   const Stopwatch load;
-  Scene loaded = load_scene(request.input);
+  Scene loaded = load_scene(request.input, request.load);
   const StagingReport staging = apply_request(loaded, request, arguments);
   stats.load_seconds = load.seconds();
 

@@ -141,6 +141,7 @@ std::string parse_output(const Arguments& arguments) {
 RenderRequest make_render_request(const Arguments& arguments) {
   RenderRequest request;
   request.input = arguments.positionals[0];
+  request.load = load_options_of(arguments);
   request.output = parse_output(arguments);
   check_integrator(arguments);
   request.aovs = parse_aovs(arguments);

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "arris/command_line.h"
+#include "arris/io.h"
 #include "arris/render.h"
 #include "arris/scene.h"
 #include "render/staging.h"
@@ -15,6 +16,7 @@ namespace arris::program {
 
 struct RenderRequest {
   std::filesystem::path input;
+  LoadOptions load;
   std::string output;  // "-": PNG to stdout
   std::optional<std::string> stats;
   std::optional<std::filesystem::path> checkpoint;

@@ -97,6 +97,7 @@ int run_shoot(const Arguments& arguments) {
   }
   const int threads = threads_of(arguments);
   with_rounding_options({}, arguments);
+  const LoadOptions load_options = load_options_of(arguments);
   std::ifstream file;
   if (*rays != "-") {
     file.open(*rays);
@@ -104,7 +105,7 @@ int run_shoot(const Arguments& arguments) {
       throw Error(Error::Kind::input, *rays, "can't be opened; --rays needs a file of rays or -");
     }
   }
-  Scene scene = load_scene(arguments.positionals[0]);
+  Scene scene = load_scene(arguments.positionals[0], load_options);
   Console console(arguments);
   for (const std::string& note : scene.notes) console.report(note);
   apply_rounding_options(scene, arguments);
