@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+
+#include "render/object_extent.h"
 
 namespace arris {
 namespace {
@@ -29,8 +32,7 @@ Extent extent_of(const Scene& scene, const Axes& axes, double tan_x, double tan_
   constexpr double kNone = -std::numeric_limits<double>::infinity();
   Extent extent{kNone, kNone, kNone, kNone, kNone, kNone};
   for (const Object& object : scene.objects) {
-    for (const Vec3f& position : scene.meshes[object.mesh.index].positions) {
-      const Vec3d p = transform_point(object.world_from_object, Vec3d(position));
+    visit_extent(scene, object, [&](Vec3d p) {
       const double x = dot(p, axes.right), y = dot(p, axes.up), z = dot(p, axes.forward);
       extent.right = std::max(extent.right, x - tan_x * z);
       extent.left = std::max(extent.left, -x - tan_x * z);
@@ -38,7 +40,7 @@ Extent extent_of(const Scene& scene, const Axes& axes, double tan_x, double tan_
       extent.bottom = std::max(extent.bottom, -y - tan_y * z);
       extent.near = std::max(extent.near, -z);
       extent.far = std::max(extent.far, z);
-    }
+    });
   }
   return extent;
 }

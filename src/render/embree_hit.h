@@ -69,6 +69,10 @@ inline Vec2f interpolated_uv(const GeometryRecord& record, const Triangle& indic
   return {w * a.x + u * b.x + v * c.x, w * a.y + u * b.y + v * c.y};
 }
 
+// On a CSG solid: evaluated anew in double, along the same ray.
+void fill_csg_hit(const SceneGeometry& geometry, const TraceRay& ray, const RTCRayHit& query,
+                  SurfaceHit& hit);
+
 // Written in place: a hit is a hundred bytes, on the hottest path.
 inline void fill_hit(const SceneGeometry& geometry, const TraceRay& ray, const RTCRayHit& query,
                      SurfaceHit& hit) {
@@ -77,6 +81,9 @@ inline void fill_hit(const SceneGeometry& geometry, const TraceRay& ray, const R
   hit.t = query.ray.tfar;
   hit.position_error = record.position_error;
   hit.triangle = query.hit.primID;
+  if (record.triangles == nullptr) [[unlikely]] {
+    return fill_csg_hit(geometry, ray, query, hit);
+  }
   hit.u = query.hit.u;
   hit.v = query.hit.v;
   const Triangle& indices = record.triangles[hit.triangle];

@@ -4,6 +4,8 @@
 #include <limits>
 #include <span>
 
+#include "render/object_extent.h"
+
 namespace arris {
 namespace {
 
@@ -79,11 +81,10 @@ SceneBounds bounds_of(const Scene& scene) {
   constexpr double kFar = std::numeric_limits<double>::infinity();
   Vec3d low(kFar), high(-kFar);
   for (const Object& object : scene.objects) {
-    for (const Vec3f& position : scene.meshes[object.mesh.index].positions) {
-      const Vec3d p = transform_point(object.world_from_object, Vec3d(position));
+    visit_extent(scene, object, [&](Vec3d p) {
       low = min(low, p);
       high = max(high, p);
-    }
+    });
   }
   if (!(low.x <= high.x)) {
     return {};
@@ -95,7 +96,10 @@ SceneBounds bounds_of(const Scene& scene) {
 }  // namespace
 
 SceneGeometry::SceneGeometry(Scene described, const EmbreeSceneOptions& options)
-    : scene(std::move(described)), embree(scene, options) {
+    : scene(std::move(described)),
+      csg(make_csg_objects(scene, options.threads)),
+      embree(scene, options, make_csg_boxes(scene, csg)) {
+  set_csg_records(csg, embree);
   std::transform(scene.materials.begin(), scene.materials.end(), std::back_inserter(materials),
                  prepare_material);
   any_translucent = std::any_of(materials.begin(), materials.end(),

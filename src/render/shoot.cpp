@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "render/object_extent.h"
 #include "render/scene_geometry.h"
 
 namespace arris {
@@ -35,11 +36,10 @@ Shooter::Shooter(const PreparedScene& scene) : scene_(scene) {
   Vec3d lower(std::numeric_limits<double>::infinity()), upper = -lower;
   const Scene& described = scene.scene();
   for (const Object& object : described.objects) {
-    for (const Vec3f& position : described.meshes[object.mesh.index].positions) {
-      const Vec3d p = transform_point(object.world_from_object, Vec3d(position));
+    visit_extent(described, object, [&](Vec3d p) {
       lower = min(lower, p);
       upper = max(upper, p);
-    }
+    });
   }
   if (!is_finite(lower)) return;
   center_ = (lower + upper) * 0.5;
@@ -64,7 +64,13 @@ std::optional<Shot> Shooter::shoot(const Ray& ray) const {
   shot.object = hit->object;
   shot.feature = hit->feature;
   shot.inside = hit->side == Side::inside;
-  if (hit->feature == Feature::face) {
+  if (hit->feature == Feature::csg) {
+    const CsgObject& object = *scene_.geometry().csg.by_record[hit->geometry];
+    if (const auto point = find_csg_point(object, hit->triangle, ray, shot.t)) {
+      shot.normal = point->normal;
+      shot.t = std::max(0.0, point->t);
+    }
+  } else if (hit->feature == Feature::face) {
     if (const auto plane = plane_of(scene_, *hit)) {
       const double slope = dot(plane->normal, ray.direction);
       shot.normal = plane->normal;

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "render/camera.h"
+#include "render/object_extent.h"
 #include "scene/material_presets.h"
 
 namespace arris {
@@ -31,12 +32,11 @@ GroundFrame make_ground_frame(Vec3d scene_up) {
 Bounds bounds_in(const Scene& scene, const GroundFrame& frame) {
   Bounds bounds;
   for (const Object& object : scene.objects) {
-    for (const Vec3f& position : scene.meshes[object.mesh.index].positions) {
-      const Vec3d p = transform_point(object.world_from_object, Vec3d(position));
+    visit_extent(scene, object, [&](Vec3d p) {
       const Vec3d local{dot(p, frame.east), dot(p, frame.north), dot(p, frame.up)};
       bounds.lower = min(bounds.lower, local);
       bounds.upper = max(bounds.upper, local);
-    }
+    });
   }
   return bounds;
 }
