@@ -49,7 +49,6 @@ def stamp_of(path):
 
 
 def sources():
-    subprocess.run(["cmake", "--preset", "tidy"], cwd=ROOT, check=True, stdout=subprocess.DEVNULL)
     commands = json.loads((BUILD / "compile_commands.json").read_text())
     paths = {Path(command["directory"], command["file"]).resolve() for command in commands}
     return {p for p in paths if p.is_relative_to(ROOT) and p.relative_to(ROOT).parts[0] in FOLDERS}
@@ -85,6 +84,7 @@ def findings_of(text):
 
 def main():
     deadline = time.monotonic() + float(os.environ.get("ARRIS_TIDY_SECONDS", "1800"))
+    subprocess.run(["cmake", "--preset", "tidy"], cwd=ROOT, check=True, stdout=subprocess.DEVNULL)
     STAMPS.mkdir(parents=True, exist_ok=True)
     wanted = {Path(name).resolve() for name in sys.argv[1:]} or sources()
     waiting = {path: stamp_of(path) for path in wanted}
