@@ -164,6 +164,10 @@ bool Clearance::leaves_face(const Cut& cut, const TriangleView& triangle) const 
     const std::uint32_t twin = mesh_.twin[h];
     // Between two faces of the cut there is no line but its own edges.
     if (twin <= kLastHalfEdge && has_face(cut, regions_.region[twin / 3])) continue;
+    // The plane of a mitre need not hold the corner: beyond it the other edge's cut goes on.
+    if (std::ranges::any_of(cut.mitred, [&](std::uint32_t m) { return m == h || m == twin; })) {
+      continue;
+    }
     const auto part = clip({triangle.corners[k], triangle.corners[(k + 1) % 3]}, cut.planes,
                            [&](const CutPlane& plane) -> std::optional<double> {
                              if (plane.face == triangle.region) return std::nullopt;

@@ -49,8 +49,10 @@ struct Cut {
   std::vector<Segment> axes;     // its void is farther than the radius from these
   std::vector<Segment> outline;  // edges of its boundary
   std::array<std::uint32_t, 2> ends{
-      kNone, kNone};                // vertices of the mesh; cuts that share one may overlap
-  std::uint32_t half_edge = kNone;  // the arc's first, or one that leaves the corner
+      kNone, kNone};  // vertices of the mesh; cuts that share one may overlap
+  std::array<std::uint32_t, 2> mitred{kNone,
+                                      kNone};  // half-edges of those with which it meets in a mitre
+  std::uint32_t half_edge = kNone;             // the arc's first, or one that leaves the corner
   bool is_corner = false;
 };
 

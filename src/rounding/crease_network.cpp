@@ -157,6 +157,7 @@ bool NetworkBuilder::add_cut(const NetworkArc& arc, const End& end0, const End& 
   Cut cut;
   cut.half_edge = arc.half_edge0;
   cut.ends = {mesh_.origin(arc.half_edge0), mesh_.origin(arc.half_edge1)};
+  cut.mitred = {end0.mitred, end1.mitred};
   const Vec3d out = normalize(a.normal + b.normal);
   cut.planes = {{a.normal, a.d, arc.arc.face_a},
                 {b.normal, b.d, arc.arc.face_b},
@@ -164,7 +165,7 @@ bool NetworkBuilder::add_cut(const NetworkArc& arc, const End& end0, const End& 
   std::array<std::array<Vec3d, 3>, 2> at;
   for (const auto& [end, points] : {std::pair(&end0, &at[0]), std::pair(&end1, &at[1])}) {
     const Vec3d n = end->plane_normal;
-    const double leeway = end->is_mitre ? kMitreLeeway * setback : 0;
+    const double leeway = end->mitred != kNone ? kMitreLeeway * setback : 0;
     cut.planes.push_back({-n, -dot(n, end->plane_point), kNone, leeway});
     for (std::size_t i = 0; i < 3; ++i) {
       (*points)[i] = lines[i] + axis * (dot(n, end->plane_point - lines[i]) / dot(n, axis));
@@ -357,8 +358,8 @@ bool NetworkBuilder::make_mitre(const RingEdge& a, const RingEdge& b) {
   if (!mitre || length(mitre->center - v) > 8 * radius_) return false;
   const std::uint32_t node = add_node({mitre->center, Node::Kind::mitre, kNone});
   const Vec3d normal = normalize(direction_a - direction_b);
-  set_end(a.half_edge, {node, mitre->end_a, mitre->center, normal, true});
-  set_end(b.half_edge, {node, mitre->end_b, mitre->center, -normal, true});
+  set_end(a.half_edge, {node, mitre->end_a, mitre->center, normal, b.half_edge});
+  set_end(b.half_edge, {node, mitre->end_b, mitre->center, -normal, a.half_edge});
   return true;
 }
 

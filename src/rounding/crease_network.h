@@ -60,10 +60,10 @@ class NetworkBuilder {
  private:
   struct End {
     std::uint32_t node;
-    Vec3d point;         // end of the arc's axis
-    Vec3d plane_point;   // of the plane in which the arc ends
-    Vec3d plane_normal;  // unit, towards the arc
-    bool is_mitre = false;
+    Vec3d point;                   // end of the arc's axis
+    Vec3d plane_point;             // of the plane in which the arc ends
+    Vec3d plane_normal;            // unit, towards the arc
+    std::uint32_t mitred = kNone;  // half-edge of the other arc of a mitre
   };
   struct RingEdge {
     std::uint32_t half_edge;                // outgoing
