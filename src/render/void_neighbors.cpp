@@ -24,7 +24,8 @@ struct Body {
   std::uint32_t solid = kNone;  // kNone: not rounded
   Vec3d low{INFINITY, INFINITY, INFINITY}, high{-INFINITY, -INFINITY, -INFINITY};
   std::vector<Vec3d> points;  // whose hull holds it; in world space
-  double margin = 0;          // kVoidMargin of its size, for rounded ones
+  // For rounded ones: world units to one of the rounding's, and kVoidMargin of the size in world units.
+  double scale = 1, margin = 0;
 
   void include(Vec3d p) {
     low = min(low, p);
@@ -88,7 +89,9 @@ class NeighborFinder {
       bodies_[i].geometry = geometry;
       if (rounding == nullptr) continue;
       bodies_[i].solid = std::uint32_t(i - first);
-      bodies_[i].margin = kVoidMargin * rounding->data().solids[i - first].size;
+      const RoundingFrame* frame = out_.geometries[geometry].frame;
+      if (frame != nullptr) bodies_[i].scale = 1 / length(frame->rounding_from_world.linear.x);
+      bodies_[i].margin = kVoidMargin * rounding->data().solids[i - first].size * bodies_[i].scale;
     }
     seen_.assign(geometry_.scene.meshes[record.mesh.index].positions.size(), kNone);
     for (std::uint32_t t = 0; t < record.triangle_count; ++t) {
@@ -200,8 +203,8 @@ class NeighborFinder {
     for (std::uint32_t i = solid.first_arc; i < solid.first_arc + solid.arc_count; ++i) {
       if (data.arcs[i].is_stub()) continue;
       const auto [beside, anywhere] = distances(g, data.arcs[i], b, points);
-      marks[i] = std::max(marks[i], neighbors_at(beside, touching, a.margin));
-      of_solid = std::max(of_solid, neighbors_at(anywhere, touching, a.margin));
+      marks[i] = std::max(marks[i], neighbors_at(beside * a.scale, touching, a.margin));
+      of_solid = std::max(of_solid, neighbors_at(anywhere * a.scale, touching, a.margin));
     }
   }
 
@@ -222,7 +225,7 @@ class NeighborFinder {
     double anywhere = -INFINITY;  // from that and the corners
   };
 
-  // Lower bounds on the distances of b, given by points, from an arc's void. The void lies under the arc's two faces,
+  // Lower bounds on the distances of b, given by points, from an arc's void, in the rounding's units. The void lies under the arc's two faces,
   // beyond the plane through the touching lines, less than r / sin α from the axis, and between the arc's ends, where
   // corners reach no farther than that either.
   [[nodiscard]] Distances distances(const RoundedGeometry& g, const Arc& arc, const Body& b,

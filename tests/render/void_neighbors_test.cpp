@@ -1,4 +1,5 @@
-// Rays that cross the void of a rounded edge in one step meet what they meet when traced through it.
+// Rays that cross the void of a rounded edge in one step meet what they meet when traced through it, and shadow
+// rays are stopped by what others meet.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -22,9 +23,14 @@ struct Heap {
   const char* name;
   double step;     // between the pieces' places
   double scatter;  // about them
-  bool
-      turned;  // each its own way; else faces of neighbours are parallel, and coincide if step is 1
+  // Each its own way; else faces of neighbours are parallel, and coincide if step is 1.
+  bool turned = false;
+  double scale = 0;  // of true instances of one cube; 0: pieces of their own
 };
+
+Mat3d scaled(double scale) {
+  return {{scale, 0, 0}, {0, scale, 0}, {0, 0, scale}};
+}
 
 // Cubes, prisms and dodecahedra of about unit size on a ground plane.
 Scene make_heap(const Heap& heap, std::uint64_t seed) {
@@ -37,8 +43,8 @@ Scene make_heap(const Heap& heap, std::uint64_t seed) {
     for (int j = 0; j < 4; ++j) {
       for (int k = 0; k < 3; ++k) {
         const auto pick = heap.turned ? std::size_t(oracle::uniform_int(random, 0, 2)) : 0;
-        const oracle::SolidMesh solid =
-            oracle::make_mesh(kinds[pick], {.scale = kScales[pick]}, random());
+        const double scale = heap.scale > 0 ? 1 / heap.scale : kScales[pick];
+        const oracle::SolidMesh solid = oracle::make_mesh(kinds[pick], {.scale = scale}, random());
         Mesh mesh;
         mesh.name = solid.name;
         mesh.positions = solid.positions;
@@ -47,7 +53,9 @@ Scene make_heap(const Heap& heap, std::uint64_t seed) {
         if (heap.turned) place.linear = oracle::random_rotation(random);
         place.translation = Vec3d(i, j, k) * heap.step +
                             oracle::random_direction(random) * uniform(random, 0, heap.scatter);
-        add_object(scene, std::move(mesh), make_lambert(0.5F), place);
+        if (heap.scale > 0) place.linear = scaled(heap.scale);
+        Object& object = add_object(scene, std::move(mesh), make_lambert(0.5F), place);
+        if (heap.scale > 0) object.mesh = {0};
       }
     }
   }
@@ -66,8 +74,8 @@ struct Pair {
   std::vector<std::vector<VoidNeighbors>> marks;
 };
 
-std::unique_ptr<Pair> prepare_both(const Scene& scene) {
-  auto geometry = std::make_shared<const SceneGeometry>(scene, EmbreeSceneOptions{});
+std::unique_ptr<Pair> prepare_both(const Scene& scene, const EmbreeSceneOptions& options) {
+  auto geometry = std::make_shared<const SceneGeometry>(scene, options);
   SceneRounding wary = make_scene_rounding(*geometry, scene.rounding, {});
   std::vector<std::vector<VoidNeighbors>> marks(wary.geometries.size());
   for (std::size_t i = 0; i < marks.size(); ++i) {
@@ -107,9 +115,10 @@ class VoidNeighborsOf : public ::testing::TestWithParam<Heap> {};
 TEST_P(VoidNeighborsOf, rays_agree_with_those_traced_through_the_void) {
   const Heap& heap = GetParam();
   Random random(7);
-  int rays = 0, from_edges = 0, wrong = 0, skipped = 0;
+  int rays = 0, from_edges = 0, wrong = 0, skipped = 0, untrue_shadows = 0;
   for (std::uint64_t seed = 0; seed < 6; ++seed) {
-    const auto scenes = prepare_both(make_heap(heap, seed));
+    const auto scenes = prepare_both(make_heap(heap, seed),
+                                     {.max_copied_triangles = heap.scale > 0 ? 0U : 1'000'000U});
     for (int i = 0; i < 24000; ++i) {
       TraceRay ray = towards_a_piece(heap, random);
       for (int bounce = 0; bounce < 4; ++bounce) {
@@ -120,6 +129,8 @@ TEST_P(VoidNeighborsOf, rays_agree_with_those_traced_through_the_void) {
         shadow.t_max = 1.5F;
         wrong +=
             scenes->fast.transmittance(shadow) == scenes->thorough.transmittance(shadow) ? 0 : 1;
+        const bool is_met = fast && fast->t < shadow.t_max;
+        untrue_shadows += scenes->fast.occluded(shadow) == is_met ? 0 : 1;
         if (!fast) break;
         from_edges += fast->feature != Feature::face ? 1 : 0;
         skipped += fast->crossed != kNone ? 1 : 0;
@@ -131,6 +142,7 @@ TEST_P(VoidNeighborsOf, rays_agree_with_those_traced_through_the_void) {
   }
   EXPECT_GT(from_edges, 10000);
   EXPECT_GT(skipped, from_edges / 2);
+  EXPECT_LE(untrue_shadows, rays / 10000) << rays;
   // Rays that graze a face or an edge may meet it or not, by a rounding error of its float coordinates.
   EXPECT_LE(wrong, rays / 10000) << rays;
 }
@@ -144,7 +156,9 @@ INSTANTIATE_TEST_SUITE_P(Heaps, VoidNeighborsOf,
                                            Heap{"near", 1.001, 0.0005, false},
                                            Heap{"touching", 1, 0, false},
                                            Heap{"overlapping", 0.93, 0.05, false},
-                                           Heap{"turned", 1.05, 0.1, true}),
+                                           Heap{"turned", 1.05, 0.1, true},
+                                           Heap{"instances_grown", 0.93, 0.05, false, 1000},
+                                           Heap{"instances_shrunk", 0.93, 0.05, false, 0.001}),
                          heap_name);
 
 }  // namespace
