@@ -225,9 +225,10 @@ class NeighborFinder {
     double anywhere = -INFINITY;  // from that and the corners
   };
 
-  // Lower bounds on the distances of b, given by points, from an arc's void, in the rounding's units. The void lies under the arc's two faces,
-  // beyond the plane through the touching lines, less than r / sin α from the axis, and between the arc's ends, where
-  // corners reach no farther than that either.
+  // Lower bounds on the distances of b, given by points, from an arc's void, in the rounding's units.
+  // The void lies under the arc's two faces, beyond the plane through the touching lines, less than
+  // r / sin α from the axis, and between the arc's ends, where corners reach no farther than that
+  // either.
   [[nodiscard]] Distances distances(const RoundedGeometry& g, const Arc& arc, const Body& b,
                                     std::span<const Vec3d> points) const {
     const Rounding::Data& data = g.rounding->data();
