@@ -6,7 +6,7 @@
 #include <limits>
 #include <unordered_map>
 
-#include "rounding/triangle_tree.h"
+#include "rounding/box_tree.h"
 
 namespace arris {
 namespace {
@@ -117,10 +117,15 @@ class BandMaker {
     return in_.triangles.subspan(first, in_.triangle_begin[face + 1] - first);
   }
 
-  const TriangleTree& tree_of(std::uint32_t face) {
+  const BoxTree& tree_of(std::uint32_t face) {
     const auto found = trees_.find(face);
     if (found != trees_.end()) return found->second;
-    return trees_.try_emplace(face, in_.mesh, triangles_of(face), solid_.center).first->second;
+    std::vector<Box> boxes;
+    for (const std::uint32_t t : triangles_of(face)) {
+      boxes.push_back({min(min(corner(t, 0), corner(t, 1)), corner(t, 2)),
+                       max(max(corner(t, 0), corner(t, 1)), corner(t, 2)), t});
+    }
+    return trees_.try_emplace(face, std::move(boxes)).first->second;
   }
 
   // cosine: between the normals of the two faces.
@@ -146,7 +151,7 @@ class BandMaker {
   const BandInput& in_;
   const Solid& solid_;
   std::vector<TriangleBand>& out_;
-  std::unordered_map<std::uint32_t, TriangleTree> trees_;  // by face, as needed
+  std::unordered_map<std::uint32_t, BoxTree> trees_;  // by face, as needed
 };
 
 }  // namespace

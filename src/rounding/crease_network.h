@@ -2,9 +2,10 @@
 // What       Chains of rounded edges become arcs, their ends nodes (see corner.h). For a closed convex shell
 //            whose arcs all have positive length this is the edge graph of the erosion E; where arcs turn
 //            over, the radius has eaten features and the caller makes E by half-space intersection
-//            (eroded_polyhedron.h). On other shells such edges are left sharp and counted.
+//            (eroded_polyhedron.h). On other shells such edges are left sharp and counted, and so are those that
+//            would take away what is not theirs (clearance.h); a corner that would gets caps in the sphere's place.
 // In / Out   coordinates relative to the shell's centre
-// Cost       linear in the shell's triangles
+// Cost       linear in the shell's triangles, but for clearance.h
 #pragma once
 
 #include <cstdint>
@@ -13,6 +14,8 @@
 
 #include "edges/flat_regions.h"
 #include "edges/welded_mesh.h"
+#include "rounding/clearance.h"
+#include "rounding/corner.h"
 #include "rounding/rounding_data.h"
 
 namespace arris {
@@ -39,7 +42,8 @@ struct ShellNetwork {
   std::uint64_t rounded_edges = 0;    // chains of mesh edges
   std::uint64_t rounded_corners = 0;  // mesh corners that got spheres
   std::uint64_t shortened_edges = 0;  // left sharp: the radius needs more length than they have
-  bool inverted = false;              // some arc has vanished or turned over
+  std::uint64_t narrow_edges = 0;  // left sharp: what would be taken away isn't free (clearance.h)
+  bool inverted = false;           // some arc has vanished or turned over
   // The largest radius at which no arc has vanished yet, from the lengths of the arcs.
   double radius_limit = std::numeric_limits<double>::infinity();
 };
@@ -56,7 +60,10 @@ class NetworkBuilder {
  private:
   struct End {
     std::uint32_t node;
-    Vec3d point;  // end of the arc's axis
+    Vec3d point;                   // end of the arc's axis
+    Vec3d plane_point;             // of the plane in which the arc ends
+    Vec3d plane_normal;            // unit, towards the arc
+    std::uint32_t mitred = kNone;  // half-edge of the other arc of a mitre
   };
   struct RingEdge {
     std::uint32_t half_edge;                // outgoing
@@ -64,7 +71,24 @@ class NetworkBuilder {
     bool rounded;
   };
 
-  ShellNetwork build_once(std::uint32_t shell, bool convex, std::vector<std::uint32_t>& inverted);
+  // First half-edges of the arcs to be left sharp, and a half-edge of each corner not to get spheres.
+  struct Refused {
+    std::vector<std::uint32_t> shortened, narrow, corners;
+
+    [[nodiscard]] bool any() const {
+      return !shortened.empty() || !narrow.empty() || !corners.empty();
+    }
+  };
+
+  ShellNetwork build_once(std::uint32_t shell, bool convex, Refused& refused);
+  void leave_sharp(std::uint32_t first);
+  void leave_all_sharp(std::uint32_t shell);
+  void forget_ends(std::uint32_t shell);
+  void check_cuts(Clearance& clearance, Refused& refused);
+  void leave_without_spheres(const Cut& corner, Refused& refused);
+  bool add_cut(const NetworkArc& arc, const End& end0, const End& end1);
+  void add_corner_cut(const CornerErosion& erosion);
+  [[nodiscard]] double cap_shift(const RingEdge& edge) const;
   void collect_ring(std::uint32_t half_edge);
   void make_corner();
   void make_cap(const RingEdge& edge);
@@ -92,7 +116,10 @@ class NetworkBuilder {
   bool ring_irregular_ = false;
   Vec3d center_;
   double size_ = 0;
+  bool convex_ = false;
   ShellNetwork out_;
+  std::vector<Cut> cuts_;     // of what is made, on shells that aren't convex
+  std::vector<bool> capped_;  // per half-edge: its corner gets no spheres
 };
 
 }  // namespace arris

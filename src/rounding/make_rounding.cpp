@@ -180,6 +180,7 @@ class RoundingMaker {
     data_->report.rounded_edges += network.rounded_edges;
     data_->report.rounded_corners += network.rounded_corners;
     shortened_ += network.shortened_edges;
+    narrow_ += network.narrow_edges;
     const BandInput input{mesh_, welded_, regions_, triangle_begin_, triangles_, options_.radius};
     append_bands(input, network, solid, solid.first_arc, bands_);
     append(network, solid);
@@ -378,6 +379,8 @@ class RoundingMaker {
          "non-manifold edges stay sharp");
     note(shortened_, "edge stays sharp: the radius needs more length than it has",
          "edges stay sharp: the radius needs more length than they have");
+    note(narrow_, "edge stays sharp: the radius is too large for the faces beside it",
+         "edges stay sharp: the radius is too large for the faces beside them");
     note(too_small_, "solid stays sharp: no ball of the radius fits into it",
          "solids stay sharp: no ball of the radius fits into them");
   }
@@ -401,7 +404,7 @@ class RoundingMaker {
   std::vector<std::uint32_t> walls_;
   bool keep_networks_ = false;
   std::vector<ShellNetwork> networks_;
-  std::uint64_t cavities_ = 0, shortened_ = 0, too_small_ = 0, unasked_ = 0;
+  std::uint64_t cavities_ = 0, shortened_ = 0, narrow_ = 0, too_small_ = 0, unasked_ = 0;
 };
 
 }  // namespace

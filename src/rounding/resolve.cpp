@@ -77,20 +77,31 @@ Resolution walk_from_void(const Rounding::Data& data, const Solid& solid, Vec3d 
   return out;
 }
 
-// Solids that aren't exact: bands may reach beyond the void. x is in it if it lies under the arc's faces and
-// farther than r from the place.
-bool is_under_arc(const Rounding::Data& data, const Solid& solid, std::uint32_t arc_index,
-                  Place place, Vec3d x) {
+// A face that isn't convex may go on above another one of the corner.
+bool is_under_corner(const Rounding::Data& data, const Node& node, Vec3d x, double slack) {
+  for (std::uint32_t i = 0; i < node.link_count; ++i) {
+    const Arc& arc = data.arcs[data.links[node.first_link + i]];
+    for (const std::uint32_t f : {arc.face_a, arc.face_b}) {
+      if (dot(Vec3d(data.faces[f].normal), x) - data.faces[f].d > 10 * slack) return false;
+    }
+  }
+  return true;
+}
+
+// Solids that aren't exact: bands may reach beyond the void. x is in it if it lies under the faces of the arc or corner
+// and farther than r from the place.
+bool is_under_place(const Rounding::Data& data, const Solid& solid, Place place, Vec3d x) {
   const double slack = kOnSurface * solid.size;
   if (distance_to_place(data, place, x) <= data.radius + slack) return false;
-  const Arc& arc = data.arcs[place.is_node ? arc_index : place.index];
+  if (place.is_node) return is_under_corner(data, data.nodes[place.index], x, slack);
+  const Arc& arc = data.arcs[place.index];
   // A touching line lies r (1 − n_a·n_b) under the other face.
   const double deepest = data.radius * (1 - dot(Vec3d(data.faces[arc.face_a].normal),
                                                 Vec3d(data.faces[arc.face_b].normal)));
   for (const std::uint32_t f : {arc.face_a, arc.face_b}) {
     const double above = dot(Vec3d(data.faces[f].normal), x) - data.faces[f].d;
     if (above > 10 * slack) return false;
-    if (!place.is_node && above < -deepest - slack) return false;
+    if (above < -deepest - slack) return false;
   }
   return true;
 }
@@ -100,7 +111,7 @@ std::optional<Place> place_of(const Rounding::Data& data, const Solid& solid, st
                               Vec3d x) {
   if (solid.rewired) return search_place(data, solid, x);
   const std::optional<Place> place = find_place(data, solid, arc, x);
-  if (place && !solid.exact && !is_under_arc(data, solid, arc, *place, x)) return std::nullopt;
+  if (place && !solid.exact && !is_under_place(data, solid, *place, x)) return std::nullopt;
   return place;
 }
 

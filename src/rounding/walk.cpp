@@ -206,6 +206,7 @@ class Walk {
       return {};
     }
     if (root.receding && leave == kInfinity) return {};
+    if (net_.arc(next).is_stub() && exit_through_faces(net_.arc(next), offset) < leave) return {};
     advance(leave);
     if (net_.arc(next).is_stub()) {
       set_hit(0, -next_direction, Feature::corner);

@@ -59,24 +59,33 @@ struct RoundedMesh {
 
 // The first point of one rounded mesh on the ray. A ray whose first hit is from inside may have started in the
 // void between the sharp and the rounded surface, and enter the rounded solid before it leaves: that hit is
-// resolved even where the surface is kept.
+// resolved even where the surface is kept. A ray that passes a solid that isn't exact, and next leaves it by what is
+// kept, went through material: there the first hit stands.
 inline std::optional<RoundedHit> trace(const Ray& ray, const RoundedMesh& object,
                                        RayStart start = RayStart::unknown) {
   std::set<std::uint32_t> passed;  // exact solids that the ray has missed for good
+  std::optional<MeshHit> entry;    // the last that was passed, into a solid that isn't exact
+  const auto stands = [&](const MeshHit& hit) {
+    return RoundedHit{hit.t, object.rounding->face_normal(hit.triangle), Feature::face};
+  };
   for (const MeshHit& hit : intersect_mesh(ray, object.mesh)) {
     const std::uint32_t solid = object.rounding->solid_of(hit.triangle);
     if (passed.contains(solid)) continue;
     const bool from_inside = dot(object.rounding->face_normal(hit.triangle), ray.direction) > 0;
-    if (!from_inside && object.rounding->is_kept(hit.triangle, hit.u, hit.v))
-      return RoundedHit{hit.t, object.rounding->face_normal(hit.triangle), Feature::face};
+    if (!from_inside && object.rounding->is_kept(hit.triangle, hit.u, hit.v)) return stands(hit);
     const Resolution resolution = object.rounding->resolve(ray, hit, start);
+    const bool leaves = from_inside && entry && object.rounding->solid_of(entry->triangle) == solid;
+    if (leaves && resolution.outcome != Resolution::Outcome::passed) return stands(*entry);
     switch (resolution.outcome) {
       case Resolution::Outcome::kept:
-        return RoundedHit{hit.t, object.rounding->face_normal(hit.triangle), Feature::face};
+        return stands(hit);
       case Resolution::Outcome::moved:
         return resolution.hit;
       case Resolution::Outcome::passed:
-        if (object.rounding->is_exact(solid)) passed.insert(solid);
+        if (object.rounding->is_exact(solid))
+          passed.insert(solid);
+        else if (!from_inside)
+          entry = hit;
         break;
     }
   }

@@ -1,0 +1,80 @@
+// box_tree.h — boxes in a tree, to find those that reach into slabs
+// Cost       building n log n; a search visits the boxes near the slabs alone, so that a face of many edges
+//            does not cost the product of its edges and triangles
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "arris/math.h"
+
+namespace arris {
+
+// All x with low ≤ normal·x ≤ high.
+struct Slab {
+  Vec3d normal;
+  double low, high;
+};
+
+struct Box {
+  Vec3d low, high;
+  std::uint32_t item;  // what is in it
+};
+
+class BoxTree {
+ public:
+  explicit BoxTree(std::vector<Box> boxes);
+
+  // Visits the item of every box that reaches into all the slabs, and some beside it.
+  template <class Visit>
+  void for_each_near(std::span<const Slab> slabs, Visit&& visit) const {
+    for_each_where(
+        [&](const Node& node) {
+          return std::ranges::all_of(slabs, [&](const Slab& s) { return reaches(node, s); });
+        },
+        visit);
+  }
+  // The same for those that reach into a box.
+  template <class Visit>
+  void for_each_near(Vec3d low, Vec3d high, Visit&& visit) const {
+    const Vec3d middle = (low + high) * 0.5;
+    const Vec3d half = (high - low) * 0.5;
+    for_each_where([&](const Node& node) { return reaches(node, middle, half); }, visit);
+  }
+
+ private:
+  struct Node {
+    Vec3d middle, half;                  // of the box
+    std::uint32_t first = 0, count = 0;  // its items, of a leaf
+    std::uint32_t next = 0;              // the node after this one's children
+  };
+
+  template <class IsNear, class Visit>
+  void for_each_where(IsNear&& is_near, Visit&& visit) const {
+    for (std::uint32_t i = 0; i < nodes_.size();) {
+      const Node& node = nodes_[i];
+      const bool near = is_near(node);
+      if (near) {
+        for (std::uint32_t k = 0; k < node.count; ++k) visit(items_[node.first + k]);
+      }
+      i = near ? i + 1 : node.next;
+    }
+  }
+
+  static bool reaches(const Node& node, const Slab& slab);
+  static bool reaches(const Node& node, Vec3d middle, Vec3d half) {
+    for (int axis = 0; axis < 3; ++axis) {
+      if (std::abs(node.middle[axis] - middle[axis]) > node.half[axis] + half[axis]) return false;
+    }
+    return true;
+  }
+  void build(std::span<Box> boxes);
+
+  std::vector<Node> nodes_;  // each before its children
+  std::vector<std::uint32_t> items_;
+};
+
+}  // namespace arris
