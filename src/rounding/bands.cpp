@@ -26,6 +26,14 @@ class BandMaker {
     add_on(source, arc, source.arc.face_b, source.arc.face_a);
   }
 
+  void add_border(const BorderFace& border, std::uint32_t first_arc) {
+    NetworkArc source{};
+    source.v0 = border.v0;
+    source.v1 = border.v1;
+    source.arc.line.p0 = Vec3f(border.v0);
+    add_on(source, first_arc + border.arc, border.face, border.other);
+  }
+
   // All of a face that E doesn't have: every point of it is in the void.
   void add_whole(std::uint32_t face, const ShellNetwork& network, std::uint32_t first_arc) {
     for (const std::uint32_t t : triangles_of(face)) {
@@ -168,6 +176,7 @@ void append_bands(const BandInput& input, const ShellNetwork& network, const Sol
     has_arc[source.arc.face_a - solid.first_face] = true;
     has_arc[source.arc.face_b - solid.first_face] = true;
   }
+  for (const BorderFace& border : network.border_faces) maker.add_border(border, first_arc);
   for (std::uint32_t f = 0; f < has_arc.size(); ++f) {
     if (!has_arc[f]) maker.add_whole(solid.first_face + f, network, first_arc);
   }

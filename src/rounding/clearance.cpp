@@ -196,10 +196,14 @@ bool Clearance::reaches_void(const Cut& cut, const TriangleView& triangle) {
   }
   polygon_.assign(triangle.corners.begin(), triangle.corners.end());
   const Vec3d normal = regions_.planes[triangle.region].normal;
+  const auto continues = [&](const CutPlane& plane) {
+    return plane.face != kNone && dot(plane.normal, normal) > kSmoothCosine;
+  };
+  const bool is_smooth = std::ranges::any_of(cut.planes, continues);
   for (const CutPlane& plane : cut.planes) {
-    const bool continues = plane.face != kNone && dot(plane.normal, normal) > kSmoothCosine;
-    const double d = plane.d - (continues ? std::max(tolerance_, smooth_depth(cut, triangle.index))
-                                          : tolerance_);
+    double inset = is_smooth ? plane.leeway : 0.0;
+    if (continues(plane)) inset = smooth_depth(cut, triangle.index);
+    const double d = plane.d - std::max(tolerance_, inset);
     clipped_.clear();
     for (std::size_t i = 0; i < polygon_.size(); ++i) {
       const Vec3d p = polygon_[i];

@@ -48,11 +48,9 @@ struct Cut {
   std::vector<CutPlane> planes;
   std::vector<Segment> axes;     // its void is farther than the radius from these
   std::vector<Segment> outline;  // edges of its boundary
-  std::array<std::uint32_t, 2> ends{
-      kNone, kNone};  // vertices of the mesh; cuts that share one may overlap
-  std::array<std::uint32_t, 2> mitred{kNone,
-                                      kNone};  // half-edges of those with which it meets in a mitre
-  std::uint32_t half_edge = kNone;             // the arc's first, or one that leaves the corner
+  std::array<std::uint32_t, 2> ends{kNone, kNone};  // of the mesh; cuts that share one may overlap
+  std::vector<std::uint32_t> mitred;  // half-edges of those with which it meets in a mitre
+  std::uint32_t half_edge = kNone;    // the arc's first, or one that leaves the corner
   bool is_corner = false;
 };
 

@@ -11,10 +11,6 @@
 namespace arris {
 namespace {
 
-// Marks in end_of_.
-constexpr std::uint32_t kUnset = kNone;
-constexpr std::uint32_t kThrough = kNone - 1;  // the chain goes straight on here
-
 // Cosine between an edge and the normal of a face across it, from which on the edge runs into it or ends at it.
 constexpr double kFacing = 0.3;
 
@@ -24,20 +20,22 @@ constexpr double kLengthTolerance = 1e-6;
 // Leaving an edge sharp changes its neighbours' ends. A shell that isn't settled after so many rounds stays sharp.
 constexpr int kMaxRounds = 64;
 
-// Where two cylinders meet at an edge that stays sharp, it may lie beside the plane in which they meet by so much, relative
-// to how far from it they touch the faces.
+// Where two cylinders meet at an edge that stays sharp, it may lie beside the plane in which they meet by so much,
+// relative to how far from it they touch the faces.
 constexpr double kMitreLeeway = 0.25;
 
 }  // namespace
 
 NetworkBuilder::NetworkBuilder(const WeldedMesh& mesh, const FlatRegions& regions,
-                               std::vector<EdgeKind>& kinds, double radius)
+                               std::vector<EdgeKind>& kinds, double radius, ShortEdges short_edges)
     : mesh_(mesh),
       regions_(regions),
       kinds_(kinds),
       radius_(radius),
+      short_edges_(short_edges),
       end_of_(mesh.triangles.size() * 3, kUnset),
-      capped_(mesh.triangles.size() * 3, false) {}
+      capped_(mesh.triangles.size() * 3, false),
+      skipped_(mesh.triangles.size() * 3, false) {}
 
 ShellNetwork NetworkBuilder::build(std::uint32_t shell, bool convex) {
   std::uint64_t shortened = 0;
@@ -54,7 +52,7 @@ ShellNetwork NetworkBuilder::build(std::uint32_t shell, bool convex) {
       return network;
     }
     // Leave those edges sharp and look at their corners again.
-    shortened += refused.shortened.size();
+    shortened += refused.shortened.size() + refused.broken_runs;
     narrow += refused.narrow.size();
     for (const std::uint32_t first : refused.shortened) leave_sharp(first);
     for (const std::uint32_t first : refused.narrow) leave_sharp(first);
@@ -66,15 +64,20 @@ ShellNetwork NetworkBuilder::build(std::uint32_t shell, bool convex) {
   }
 }
 
-// The chain that starts with half-edge `first`.
-void NetworkBuilder::leave_sharp(std::uint32_t first) {
-  std::uint32_t h = first;
+// The half-edges of the chain that starts with `first`.
+std::vector<std::uint32_t> NetworkBuilder::pieces_of(std::uint32_t first) const {
+  std::vector<std::uint32_t> pieces = {first};
   for (;;) {
-    kinds_[h] = kinds_[mesh_.twin[h]] = EdgeKind::smooth;
-    std::uint32_t n = WeldedMesh::next(h);
+    std::uint32_t n = WeldedMesh::next(pieces.back());
     while (kinds_[n] == EdgeKind::flat) n = WeldedMesh::next(mesh_.twin[n]);
-    if (end_of_[n] != kThrough) break;
-    h = n;
+    if (end_of_[n] != kThrough || n == first) return pieces;
+    pieces.push_back(n);
+  }
+}
+
+void NetworkBuilder::leave_sharp(std::uint32_t first) {
+  for (const std::uint32_t h : pieces_of(first)) {
+    kinds_[h] = kinds_[mesh_.twin[h]] = EdgeKind::smooth;
   }
 }
 
@@ -102,6 +105,8 @@ ShellNetwork NetworkBuilder::build_once(std::uint32_t shell_index, bool convex, 
   out_ = {};
   ends_.clear();
   cuts_.clear();
+  borders_.clear();
+  vanished_.clear();
   const auto first = mesh_.triangles_by_shell.begin() + shell.first_triangle;
   const auto last = first + shell.triangle_count;
   for (auto t = first; t != last; ++t) {
@@ -113,10 +118,13 @@ ShellNetwork NetworkBuilder::build_once(std::uint32_t shell_index, bool convex, 
   }
   for (auto t = first; t != last; ++t) {
     for (std::uint32_t h = 3 * *t; h < 3 * *t + 3; ++h) {
-      if (kinds_[h] != EdgeKind::convex || end_of_[h] == kThrough) continue;
-      if (!make_arc(h) && !convex) refused.shortened.push_back(h);
+      const bool begins_arc = end_of_[h] != kThrough && end_of_[h] != kSkipped;
+      if (kinds_[h] == EdgeKind::convex && begins_arc) make_arc(h);
     }
   }
+  leave_broken_runs_sharp(refused);
+  skip_or_leave_sharp(refused);
+  append_border_faces();
   return std::move(out_);
 }
 
@@ -157,7 +165,8 @@ bool NetworkBuilder::add_cut(const NetworkArc& arc, const End& end0, const End& 
   Cut cut;
   cut.half_edge = arc.half_edge0;
   cut.ends = {mesh_.origin(arc.half_edge0), mesh_.origin(arc.half_edge1)};
-  cut.mitred = {end0.mitred, end1.mitred};
+  cut.mitred = end0.mitred;
+  cut.mitred.insert(cut.mitred.end(), end1.mitred.begin(), end1.mitred.end());
   const Vec3d out = normalize(a.normal + b.normal);
   cut.planes = {{a.normal, a.d, arc.arc.face_a},
                 {b.normal, b.d, arc.arc.face_b},
@@ -165,7 +174,7 @@ bool NetworkBuilder::add_cut(const NetworkArc& arc, const End& end0, const End& 
   std::array<std::array<Vec3d, 3>, 2> at;
   for (const auto& [end, points] : {std::pair(&end0, &at[0]), std::pair(&end1, &at[1])}) {
     const Vec3d n = end->plane_normal;
-    const double leeway = end->mitred != kNone ? kMitreLeeway * setback : 0;
+    const double leeway = !end->mitred.empty() ? kMitreLeeway * setback : 0;
     cut.planes.push_back({-n, -dot(n, end->plane_point), kNone, leeway});
     for (std::size_t i = 0; i < 3; ++i) {
       (*points)[i] = lines[i] + axis * (dot(n, end->plane_point - lines[i]) / dot(n, axis));
@@ -278,7 +287,14 @@ void NetworkBuilder::make_corner() {
     for (const RingEdge* edge : rounded) end_of_[edge->half_edge] = kThrough;
     return;
   }
-  if (rounded.size() == 2 && make_mitre(*rounded[0], *rounded[1])) return;
+  if (std::ranges::any_of(rounded, [&](const RingEdge* e) { return skipped_[e->half_edge]; })) {
+    make_corner_beyond();
+    return;
+  }
+  if (rounded.size() == 2 && make_mitre(*rounded[0], *rounded[1])) {
+    add_border_faces(*rounded[0], *rounded[1]);
+    return;
+  }
   if (rounded.size() > 2 && !ring_open_ && !ring_irregular_ && !capped_[ring_[0].half_edge]) {
     make_spheres();
     return;
@@ -347,7 +363,8 @@ double NetworkBuilder::cap_shift(const RingEdge& edge) const {
   return setback * cotangent;
 }
 
-bool NetworkBuilder::make_mitre(const RingEdge& a, const RingEdge& b) {
+bool NetworkBuilder::make_mitre(const RingEdge& a, const RingEdge& b,
+                                const std::vector<std::uint32_t>& between) {
   const Vec3d v = local(mesh_.origin(a.half_edge));
   const Vec3d direction_a = outgoing_direction(a);
   const Vec3d direction_b = outgoing_direction(b);
@@ -358,8 +375,13 @@ bool NetworkBuilder::make_mitre(const RingEdge& a, const RingEdge& b) {
   if (!mitre || length(mitre->center - v) > 8 * radius_) return false;
   const std::uint32_t node = add_node({mitre->center, Node::Kind::mitre, kNone});
   const Vec3d normal = normalize(direction_a - direction_b);
-  set_end(a.half_edge, {node, mitre->end_a, mitre->center, normal, b.half_edge});
-  set_end(b.half_edge, {node, mitre->end_b, mitre->center, -normal, a.half_edge});
+  const auto mitred = [&](std::uint32_t half_edge) {
+    std::vector<std::uint32_t> all = {half_edge};
+    all.insert(all.end(), between.begin(), between.end());
+    return all;
+  };
+  set_end(a.half_edge, {node, mitre->end_a, mitre->center, normal, mitred(b.half_edge)});
+  set_end(b.half_edge, {node, mitre->end_b, mitre->center, -normal, mitred(a.half_edge)});
   return true;
 }
 
@@ -405,19 +427,13 @@ void NetworkBuilder::make_spheres() {
   }
 }
 
-// False if the arc has vanished.
-bool NetworkBuilder::make_arc(std::uint32_t first) {
-  std::uint32_t h = first;
-  for (;;) {
-    std::uint32_t n = WeldedMesh::next(h);
-    while (kinds_[n] == EdgeKind::flat) n = WeldedMesh::next(mesh_.twin[n]);
-    if (end_of_[n] != kThrough || n == first) break;
-    h = n;
-  }
+void NetworkBuilder::make_arc(std::uint32_t first) {
+  const std::uint32_t h = pieces_of(first).back();
   const std::uint32_t back = mesh_.twin[h];
-  if (first > back) return true;  // made from the other end
-  const End& e0 = ends_[end_of_[first]];
-  const End& e1 = ends_[end_of_[back]];
+  if (first > back) return;  // made from the other end
+  End& e0 = ends_[end_of_[first]];
+  End& e1 = ends_[end_of_[back]];
+  e0.arc = e1.arc = std::uint32_t(out_.arcs.size());
   const std::uint32_t face_a = regions_.region[first / 3];
   const std::uint32_t face_b = regions_.region[mesh_.twin[first] / 3];
   const Vec3d v0 = local(mesh_.origin(first));
@@ -426,19 +442,19 @@ bool NetworkBuilder::make_arc(std::uint32_t first) {
       normalize(cross(regions_.planes[face_a].normal, regions_.planes[face_b].normal));
   const double arc_length = dot(e1.point - e0.point, axis);
   const double edge_length = dot(v1 - v0, axis);
-  if (edge_length > arc_length) {
-    out_.radius_limit =
-        std::min(out_.radius_limit, radius_ * edge_length / (edge_length - arc_length));
-  }
+  const double limit = edge_length > arc_length ? radius_ * edge_length / (edge_length - arc_length)
+                                                : std::numeric_limits<double>::infinity();
+  out_.radius_limit = std::min(out_.radius_limit, limit);
   ++out_.rounded_edges;
   const ArcLine line = arc_line(e0.point, e1.point, face_a, face_b);
   const Arc arc{line, face_a, face_b, e0.node, e1.node, first / 3, mesh_.twin[first] / 3};
   out_.arcs.push_back({arc, v0, v1, first, back});
-  if (arc_length <= kLengthTolerance * size_) {
-    out_.inverted = true;
-    return false;
+  const bool has_vanished = arc_length <= kLengthTolerance * size_;
+  if (has_vanished) out_.inverted = true;
+  if (convex_) return;
+  if (has_vanished || !add_cut(out_.arcs.back(), e0, e1)) {
+    vanished_.push_back({first, back, limit});
   }
-  return convex_ || add_cut(out_.arcs.back(), e0, e1);
 }
 
 }  // namespace arris

@@ -37,7 +37,9 @@ class RoundingMaker {
     classify_edges();
     sort_triangles_by_region();
     make_solids();
-    NetworkBuilder builder(welded_, regions_, kinds_, options_.radius);
+    // A mesh of bevels has each edge of its own.
+    const ShortEdges short_edges = keep_networks_ ? ShortEdges::leave_sharp : ShortEdges::skip;
+    NetworkBuilder builder(welded_, regions_, kinds_, options_.radius, short_edges);
     for (std::uint32_t s = 0; s < data_->solids.size(); ++s) round_solid(builder, s);
     sort_bands();
     fill_links();

@@ -16,6 +16,8 @@ namespace {
 constexpr double kOnSurface = 1e-7;
 // Below this cosine between ray and face, the hit's own t is better than the intersection with the plane.
 constexpr double kGrazing = 1e-3;
+// How far above the faces of an arc other faces lie that go on smoothly from them, relative to the radius.
+constexpr double kSmoothHeight = 0.3;
 
 struct FaceHit {
   std::uint32_t face;
@@ -88,19 +90,22 @@ bool is_under_corner(const Rounding::Data& data, const Node& node, Vec3d x, doub
   return true;
 }
 
-// Solids that aren't exact: bands may reach beyond the void. x is in it if it lies under the faces of the arc or corner
-// and farther than r from the place.
-bool is_under_place(const Rounding::Data& data, const Solid& solid, Place place, Vec3d x) {
+// Solids that aren't exact: bands may reach beyond the void. x on `face` is in it if it lies under the faces of the
+// arc or corner and farther than r from the place. A face that touches the arc in a corner only goes on smoothly from
+// one of the arc's: where they make a hollow it lies above that.
+bool is_under_place(const Rounding::Data& data, const Solid& solid, Place place, std::uint32_t face,
+                    Vec3d x) {
   const double slack = kOnSurface * solid.size;
   if (distance_to_place(data, place, x) <= data.radius + slack) return false;
   if (place.is_node) return is_under_corner(data, data.nodes[place.index], x, slack);
   const Arc& arc = data.arcs[place.index];
+  const bool is_arcs = face == arc.face_a || face == arc.face_b;
   // A touching line lies r (1 − n_a·n_b) under the other face.
   const double deepest = data.radius * (1 - dot(Vec3d(data.faces[arc.face_a].normal),
                                                 Vec3d(data.faces[arc.face_b].normal)));
   for (const std::uint32_t f : {arc.face_a, arc.face_b}) {
     const double above = dot(Vec3d(data.faces[f].normal), x) - data.faces[f].d;
-    if (above > 10 * slack) return false;
+    if (above > (is_arcs ? 10 * slack : kSmoothHeight * data.radius)) return false;
     if (above < -deepest - slack) return false;
   }
   return true;
@@ -108,10 +113,10 @@ bool is_under_place(const Rounding::Data& data, const Solid& solid, Place place,
 
 // The place from which the walk starts, or nothing if the hit is kept.
 std::optional<Place> place_of(const Rounding::Data& data, const Solid& solid, std::uint32_t arc,
-                              Vec3d x) {
+                              std::uint32_t face, Vec3d x) {
   if (solid.rewired) return search_place(data, solid, x);
   const std::optional<Place> place = find_place(data, solid, arc, x);
-  if (place && !solid.exact && !is_under_place(data, solid, *place, x)) return std::nullopt;
+  if (place && !solid.exact && !is_under_place(data, solid, *place, face, x)) return std::nullopt;
   return place;
 }
 
@@ -169,7 +174,9 @@ std::optional<Place> detect_by_bands(const Rounding::Data& data, const Solid& so
   const Band* const last = data.bands.data() + data.band_begin[hit.triangle + 1];
   for (const Band* b = data.bands.data() + data.band_begin[hit.triangle]; b != last; ++b) {
     if (b->depth(float(hit.u), float(hit.v)) <= 0) continue;
-    if (const std::optional<Place> place = place_of(data, solid, b->arc, x)) return place;
+    if (const std::optional<Place> place =
+            place_of(data, solid, b->arc, data.face[hit.triangle], x))
+      return place;
   }
   return std::nullopt;
 }
@@ -189,14 +196,15 @@ std::optional<Place> detect_by_tree(const Rounding::Data& data, const Solid& sol
         entry.whole_face ? solid.size : dot(Vec3d(other.normal), ball) - (other.d - data.radius);
     if (d <= kOnSurface * solid.size) continue;
     if (!solid.exact) {
-      if (const std::optional<Place> place = place_of(data, solid, entry.arc, x)) return place;
+      if (const std::optional<Place> place = place_of(data, solid, entry.arc, face_index, x))
+        return place;
     } else if (d > depth) {
       depth = d;
       deepest = &entry;
     }
   }
   if (deepest == nullptr) return std::nullopt;
-  return place_of(data, solid, deepest->arc, x);
+  return place_of(data, solid, deepest->arc, face_index, x);
 }
 
 // Where the walk ended.
@@ -269,7 +277,7 @@ Resolution Rounding::resolve(const Ray& ray, const MeshHit& hit, RayStart start)
   } else if (!solid.exact) {
     place = detect_by_bands(*data_, solid, hit, at.x);
   } else if (arc != kNone) {
-    place = place_of(*data_, solid, arc, at.x);
+    place = place_of(*data_, solid, arc, face_index, at.x);
   }
   if (!place) return out;
   finish(out, walk(*data_, solid, *place, at.x, direction), at, entering);

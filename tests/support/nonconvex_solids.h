@@ -1,6 +1,7 @@
 // nonconvex_solids.h — seeded solids that are not convex, and all that makes them hard to round
 // What       prisms over outlines with notches, fingers and blades, straight, tapered or twisted; solids of random
-//            cells of a grid with uneven spacing: pockets, slots, steps, walls; stars of thin spikes. Each may be skewed.
+//            cells of a grid with uneven spacing: pockets, slots, steps, walls; stars of thin spikes. Each may be
+//            skewed.
 // Guarantee  same seed, same mesh; closed, outward
 #pragma once
 
