@@ -113,6 +113,42 @@ std::vector<Planes> group_channels(std::vector<std::string> names) {
 
 // ---- reading
 
+// OpenEXR takes memory for an attribute of unknown type before it reads it: up to 2 GiB, whatever the file holds.
+// Layout: OpenEXR File Layout, "Header"; what does not follow it is left to OpenEXR to refuse.
+void check_attribute_sizes(std::span<const std::uint8_t> bytes) {
+  constexpr std::size_t kMagicAndVersion = 8;
+  constexpr std::uint8_t kMultiPart = 0x10;  // of the version's second byte
+  if (bytes.size() < kMagicAndVersion) return;
+  const bool is_multi_part = (bytes[5] & kMultiPart) != 0;
+  std::size_t at = kMagicAndVersion;
+  const auto read_name = [&] {
+    const auto* const begin = bytes.data() + at;
+    const auto* const end = std::find(begin, bytes.data() + bytes.size(), std::uint8_t(0));
+    at = std::min(bytes.size(), at + std::size_t(end - begin) + 1);
+    return std::string(begin, end);
+  };
+  bool is_first = true;  // of a header
+  while (at < bytes.size()) {
+    const std::string name = read_name();
+    if (name.empty()) {
+      if (is_first || !is_multi_part) return;
+      is_first = true;
+      continue;
+    }
+    is_first = false;
+    read_name();  // its type
+    std::uint32_t size = 0;
+    if (bytes.size() - at < sizeof(size)) return;
+    std::memcpy(&size, bytes.data() + at, sizeof(size));
+    at += sizeof(size);
+    if (size > bytes.size() - at) {
+      throw std::runtime_error(fmt::format("attribute \"{}\" has {} bytes, but only {} follow",
+                                           name, size, bytes.size() - at));
+    }
+    at += size;
+  }
+}
+
 class Decoder {
  public:
   Decoder(std::span<const std::uint8_t> bytes, const std::string& name)
@@ -271,6 +307,7 @@ std::string reason_of(std::string_view text, const std::string& name) {
 
 PictureFile decode_exr(std::span<const std::uint8_t> bytes, const std::string& name) {
   try {
+    check_attribute_sizes(bytes);
     return Decoder(bytes, name).decode();
   } catch (const Error&) {
     throw;

@@ -283,6 +283,18 @@ TEST(PictureFile, what_is_wrong_with_an_exr_is_said_to_its_end) {
             "\"displayWindow\"");
 }
 
+TEST(PictureFile, an_exr_attribute_larger_than_the_file_is_refused_before_memory_is_taken) {
+  Bytes bytes = encode_picture(small_picture(), PictureFormat::exr);
+  const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+  const std::size_t size =
+      text.find("displayWindow") + std::string_view("displayWindow.box2i.").size();
+  bytes[size + 3] = 0x7F;
+  EXPECT_THAT(
+      error_of(bytes),
+      testing::StartsWith("in: is a corrupt or incomplete EXR: attribute \"displayWindow\" has "
+                          "2130706448 bytes, but only "));
+}
+
 TEST(PictureFile, a_size_that_the_format_does_not_take_is_refused) {
   const auto refusal = [](PictureFormat format, int width, int height) {
     try {
