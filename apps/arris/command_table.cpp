@@ -53,7 +53,8 @@ CommandRow render_row() {
         {{"-o,--output", "FILE",
           "the picture: .png .jpg (tone-mapped), .exr .pfm (linear); - writes PNG to stdout"},
          {"--aov", "LIST",
-          "more layers, separated by commas: albedo, normal, depth, object, rounded; part of an "
+          "more layers, separated by commas: albedo, normal, depth, object, rounded, bevel_fac; "
+          "part of an "
           ".exr, else "
           "beside the picture as .NAME.pfm"},
          {"--exposure", "STOPS", "brightness of .png and .jpg (default: the scene's, else 0)"},

@@ -75,7 +75,7 @@ struct RenderOptions {
   std::uint32_t least_samples = 1;  // made even if the time is over
   std::uint32_t seed = 0;
   int threads = 0;                // 0: all
-  std::vector<std::string> aovs;  // albedo normal depth object rounded
+  std::vector<std::string> aovs;  // albedo normal depth object rounded bevel_fac
   // Set from any thread; the render ends within a second, perhaps without any sample.
   const std::atomic<bool>* stop = nullptr;
   std::function<void(const Progress&)> on_progress;  // from one thread at a time

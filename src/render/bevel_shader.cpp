@@ -114,7 +114,9 @@ std::vector<BevelShader> make_bevel_shaders(const SceneGeometry& geometry,
 
 void bend_normal(const PreparedScene& scene, const BevelShader& shader, Vec3f ray_direction,
                  SurfaceHit& hit) {
-  const Vec3f bent = eval_bevel_shader(scene, shader, hit).normal;
+  const BevelShading shading = eval_bevel_shader(scene, shader, hit);
+  hit.bevel_fac = shading.fac;
+  const Vec3f bent = shading.normal;
   if (dot(bent, hit.shading_normal) > 1 - kBent) return;
   const Vec3f back = -ray_direction;
   const Vec3f face = hit.geometric_normal;

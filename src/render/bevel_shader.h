@@ -44,7 +44,8 @@ BevelShading eval_bevel_shader(const PreparedScene& scene, const BevelShader& sh
 std::vector<BevelShader> make_bevel_shaders(const SceneGeometry& geometry,
                                             const std::optional<RoundingSettings>& scene_default);
 
-// Puts the shader's normal in place of the hit's shading normal, bent back to where mirror directions leave the face.
+// Notes the shader's Fac in the hit and puts its normal in place of the hit's shading normal, bent back to where mirror
+// directions leave the face.
 void bend_normal(const PreparedScene& scene, const BevelShader& shader, Vec3f ray_direction,
                  SurfaceHit& hit);
 

@@ -1,5 +1,7 @@
 #include "render/film.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
 #include "arris/error.h"
@@ -20,7 +22,7 @@ int channels_of(const std::string& layer) {
 }  // namespace
 
 std::vector<std::string> film_layer_names() {
-  return {"albedo", "normal", "depth", "object", "rounded"};
+  return {"albedo", "normal", "depth", "object", "rounded", "bevel_fac"};
 }
 
 Film::Film(int width_px, int height_px, const std::vector<std::string>& layers) {
@@ -32,7 +34,7 @@ Film::Film(int width_px, int height_px, const std::vector<std::string>& layers) 
   for (const std::string& name : layers) {
     if (std::find(known.begin(), known.end(), name) == known.end()) {
       throw Error(Error::Kind::input, "aov \"" + name + "\"",
-                  "not one of albedo, normal, depth, object, rounded");
+                  fmt::format("not one of {}", fmt::join(known, ", ")));
     }
     sum_.images.push_back(make_image_sum(name, channels_of(name), pixels));
   }
@@ -45,6 +47,7 @@ Film::Film(int width_px, int height_px, const std::vector<std::string>& layers) 
   depth_ = find("depth");
   object_ = find("object");
   rounded_ = find("rounded");
+  bevel_fac_ = find("bevel_fac");
   if (object_) object_known_.resize(pixels);
 }
 
@@ -61,6 +64,7 @@ void Film::add_layers(std::size_t pixel, const FirstHit& first) {
     nearest = nearest > 0 ? std::min(nearest, first.depth) : first.depth;
   }
   if (rounded_) sum_.images[*rounded_].sums[pixel].add(first.rounded ? 1.0F : 0.0F);
+  if (bevel_fac_) sum_.images[*bevel_fac_].sums[pixel].add(first.bevel_fac);
   if (object_ && object_known_[pixel] == 0) {
     object_known_[pixel] = 1;
     sum_.images[*object_].values[pixel] = float(first.object);

@@ -21,6 +21,7 @@ namespace arris {
 struct FirstHit {
   bool hit = false;
   bool rounded = false;  // on a rounded edge or corner
+  float bevel_fac = 0;   // the bevel shader's Fac; 0 without that shader
   Rgb albedo;
   Vec3f normal;              // shading normal, towards the camera; 0 without a hit
   float depth = 0;           // distance from the camera
@@ -48,7 +49,7 @@ class Film {
   using Layer = std::optional<std::size_t>;  // index of sum_.images, if asked for
 
   PictureSum sum_;  // the colour first
-  Layer albedo_, normal_, depth_, object_, rounded_;
+  Layer albedo_, normal_, depth_, object_, rounded_, bevel_fac_;
   std::vector<std::uint8_t> object_known_;
 };
 

@@ -231,6 +231,7 @@ void fill_first_hit(FirstHit& first, const SurfaceHit& hit, const SurfaceMateria
                     const Frame& frame, float distance) {
   first.hit = true;
   first.rounded = hit.rounding_seen;
+  first.bevel_fac = hit.bevel_fac;
   first.albedo = material.base_color;
   first.normal = frame.normal;
   first.depth = distance;

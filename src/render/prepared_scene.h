@@ -60,6 +60,7 @@ struct SurfaceHit {
   Feature feature = Feature::face;
   std::uint32_t crossed = kNone;  // RoundedHit's
   bool rounding_seen = false;  // the ray met a rounded edge or corner: there, or passing one before
+  float bevel_fac = 0;         // the bevel shader's Fac; 0 without that shader
 };
 
 // A hit on one object alone.

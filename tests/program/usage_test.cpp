@@ -85,7 +85,8 @@ INSTANTIATE_TEST_SUITE_P(
         Misuse{"render cube.stl -o a.png --aov coverage_lo",
                "--aov: coverage_lo needs the integrator beam"},
         Misuse{"render cube.stl -o a.png --aov albeda",
-               "--aov: \"albeda\" is not known; use one of albedo, normal, depth, object, rounded; "
+               "--aov: \"albeda\" is not known; use one of albedo, normal, depth, object, rounded, "
+               "bevel_fac; "
                "did you mean \"albedo\"?\n"},
         Misuse{"render cube.stl -o a.png --size", "--size takes one value, once: --size WxH\n"},
         Misuse{"render cube.stl -o a.png --size 10", "--size: \"10\" is no size; use WIDTHxHEIGHT"},

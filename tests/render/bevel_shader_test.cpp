@@ -91,6 +91,27 @@ TEST(BevelShader, leaves_faces_far_from_edges_alone) {
   }
 }
 
+// Fac has a layer of its own: 1 inside of faces, less where rays find nothing, 0 on what has no such shader.
+TEST(BevelShader, writes_fac_into_a_layer) {
+  RenderOptions options;
+  options.aovs = {"bevel_fac"};
+  const auto render = [&](const RoundingSettings& settings) {
+    Scene scene = cube_scene(settings);
+    scene.camera->fov_deg = 60;
+    return test::render_path(scene, 16, options).picture.layers.at(0).image;
+  };
+  const Image steep = render(steep_settings(0.1));
+  const int x = steep.width_px / 2, y = steep.height_px / 2;
+  EXPECT_EQ(steep.at(x, y, 0), 1.0F);
+  EXPECT_EQ(steep.at(0, 0, 0), 0.0F);
+  const float wide = render(shader_settings(0.1)).at(x, y, 0);
+  EXPECT_GT(wide, 0.7F);
+  EXPECT_LT(wide, 1.0F);
+  RoundingSettings exact = shader_settings(0.1);
+  exact.method = RoundMethod::exact;
+  EXPECT_EQ(render(exact).at(x, y, 0), 0.0F);
+}
+
 TEST(BevelShader, leans_towards_the_neighbouring_face_and_more_so_nearer_to_the_edge) {
   const auto scene = prepare_scene(cube_scene(shader_settings(0.1, 8)));
   float last = -1;

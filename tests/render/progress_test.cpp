@@ -29,7 +29,8 @@ Scene make_still_life(int side_px) {
   return scene;
 }
 
-const std::vector<std::string> kAllAovs = {"albedo", "normal", "depth", "object", "rounded"};
+const std::vector<std::string> kAllAovs = {"albedo", "normal",  "depth",
+                                           "object", "rounded", "bevel_fac"};
 
 RenderResult render_range(const PreparedScene& scene, SampleRange samples, int threads = 0) {
   RenderOptions options;
