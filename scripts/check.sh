@@ -4,14 +4,14 @@
 # Goes on after a failure and exits 1 if any step failed. Logs: build/check/STEP.log
 #
 # Usage        scripts/check.sh [STEP…]     all steps by default
-# Environment  ARRIS_FUZZ_SECONDS           time for each fuzzer, 15 by default
+# Environment  ARRIS_FUZZ_SECONDS           time for each fuzzer, 8 by default
 #              ARRIS_TIDY_SECONDS           time limit of clang-tidy, 1800 by default
 set -uo pipefail
 cd "$(dirname "$0")/.."
 
 logs=$PWD/build/check
 jobs=$(nproc)
-fuzz_seconds=${ARRIS_FUZZ_SECONDS:-15}
+fuzz_seconds=${ARRIS_FUZZ_SECONDS:-8}
 steps=(dependencies release format includes tidy asan tsan fuzz install examples)
 
 step_dependencies() { scripts/install-deps.sh; }
@@ -33,11 +33,12 @@ step_includes() {
 
 step_tidy() { scripts/tidy.py; }
 
+# Without the statistics of samplers, which are about numbers and shoot a million directions each.
 step_asan() {
   cmake --preset asan
   cmake --build --preset asan
   ASAN_OPTIONS=detect_leaks=1:strict_string_checks=1 UBSAN_OPTIONS=print_stacktrace=1 \
-    ctest --preset asan --parallel "$jobs"
+    ctest --preset asan --parallel "$jobs" -E 'samples_follow_their_pdf|sampled_irradiance_is_what_is_seen'
 }
 
 # The modules that start threads; the rest of the tests would find nothing here. What must be done in a

@@ -2,7 +2,7 @@
 # fuzz-one.sh FUZZER — runs one libFuzzer program for a bounded time, from its seeds in
 # tests/fuzz/seeds/<name>/ and with the words of tests/fuzz/<name>.dict (where there are some) and what
 # earlier runs found.
-# Environment  fuzz_seconds   15 by default
+# Environment  fuzz_seconds   8 by default
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
@@ -15,7 +15,7 @@ folders=("$corpus")
 options=()
 [ ! -f "tests/fuzz/$name.dict" ] || options+=("-dict=tests/fuzz/$name.dict")
 log=build/fuzz/$name.log
-if "$1" "${folders[@]}" "${options[@]}" -max_total_time="${fuzz_seconds:-15}" -timeout=10 -rss_limit_mb=2048 \
+if "$1" "${folders[@]}" "${options[@]}" -max_total_time="${fuzz_seconds:-8}" -timeout=10 -rss_limit_mb=2048 \
   -artifact_prefix="build/fuzz/crashes/$name-" >"$log" 2>&1 </dev/null; then
   echo "$name: $(tail -n 1 "$log")"
 else

@@ -59,7 +59,7 @@ int run_merge(const Arguments& arguments) {
   check_outputs({&target, 1}, {});
   SaveOptions options;
   if (const auto given = find_given(arguments, "--exposure")) {
-    options.exposure = parse_real(*given, {-32, 32});
+    options.exposure = parse_real(*given, {-kMostStops, kMostStops});
   }
   const std::vector<Part> parts = load_parts(arguments.positionals);
   RenderPart whole = parts.front().part;

@@ -40,7 +40,7 @@ CameraOptions make_camera_options(const Arguments& arguments) {
     }
   }
   if (const auto given = find_given(arguments, "--fov")) {
-    camera.fov_deg = parse_real(*given, {0.01, 170});
+    camera.fov_deg = parse_real(*given, {kMinFovDeg, kMaxFovDeg});
   }
   return camera;
 }
@@ -174,7 +174,6 @@ RenderRequest make_render_request(const Arguments& arguments) {
 
 void apply_image_options(ImageSettings& image, const Arguments& arguments) {
   constexpr std::uint64_t kMostDepth = 1024;
-  constexpr double kMostStops = 32;
   if (const auto given = find_given(arguments, "--size")) {
     const Size size = parse_size(*given);
     image.width_px = size.width_px;

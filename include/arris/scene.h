@@ -116,6 +116,9 @@ struct Object {
   std::optional<RoundingSettings> rounding;  // empty: the scene's default
 };
 
+inline constexpr double kMinFovDeg = 0.1, kMaxFovDeg = 178;
+inline constexpr double kMostStops = 64;  // of exposure, up and down
+
 struct Camera {
   Vec3d position;
   Vec3d target;

@@ -39,8 +39,9 @@ void check_match(const PictureSum& sum, const PictureSum& other) {
                      other.height_px, sum.width_px, sum.height_px));
   }
   if (other.images.size() != sum.images.size()) {
-    fail(fmt::format("has {} layers, the part before {}", other.images.size() - 1,
-                     sum.images.size() - 1));
+    fail(fmt::format(
+        "has {} layers, the part before {}; join parts that were rendered with the same --aov",
+        other.images.size() - 1, sum.images.size() - 1));
   }
 }
 

@@ -39,7 +39,7 @@ ImageSettings parse_image(const TomlMember& member, TomlProblems& problems) {
   image.samples_per_pixel =
       reader.integer("samples", 1, kMostSamples).value_or(image.samples_per_pixel);
   image.max_depth = reader.integer("max_depth", 0, 1024).value_or(image.max_depth);
-  image.exposure = reader.number("exposure", {-64, 64}).value_or(image.exposure);
+  image.exposure = reader.number("exposure", {-kMostStops, kMostStops}).value_or(image.exposure);
   image.filter = reader.word<Filter>("filter", kFilters).value_or(image.filter);
   reader.report_unknown();
   return image;
@@ -55,7 +55,7 @@ std::optional<Camera> parse_camera(const TomlMember& member, Vec3d up, TomlProbl
   camera.position = position.value_or(camera.position);
   camera.target = reader.vec3("target", kTomlCoordinate).value_or(camera.target);
   camera.up = reader.direction("up").value_or(up);
-  camera.fov_deg = reader.number("fov", {0.1, 178}).value_or(camera.fov_deg);
+  camera.fov_deg = reader.number("fov", {kMinFovDeg, kMaxFovDeg}).value_or(camera.fov_deg);
   const Vec3d view = camera.target - camera.position;
   if (position && !(length_squared(view) > 0)) {
     reader.report("position", "is the target; move one of them");

@@ -390,10 +390,9 @@ void check_camera(const Camera& camera, Problems& problems) {
     problems.push_back(
         fmt::format("camera: up is {}, along the view; choose an up that is not", list(camera.up)));
   }
-  if (!(camera.fov_deg > 0.01 && camera.fov_deg < 179)) {
-    problems.push_back(
-        fmt::format("camera: fov is {:g} degrees; it must be more than 0.01 and less than 179",
-                    camera.fov_deg));
+  if (!(camera.fov_deg >= kMinFovDeg && camera.fov_deg <= kMaxFovDeg)) {
+    problems.push_back(fmt::format("camera: fov is {:g} degrees; it must be from {:g} to {:g}",
+                                   camera.fov_deg, kMinFovDeg, kMaxFovDeg));
   }
 }
 
@@ -405,7 +404,7 @@ void check_image(const ImageSettings& image, Problems& problems) {
   }
   check_range("image", "samples per pixel", image.samples_per_pixel, 1, kMostSamples, problems);
   check_range("image", "max_depth", image.max_depth, 0, 1024, problems);
-  check_range("image", "exposure", image.exposure, -64, 64, problems);
+  check_range("image", "exposure", image.exposure, -kMostStops, kMostStops, problems);
 }
 
 }  // namespace
