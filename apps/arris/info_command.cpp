@@ -119,7 +119,7 @@ int run_info(const Arguments& arguments) {
   const std::string& input = arguments.positionals[0];
   const int threads = threads_of(arguments);
   with_rounding_options({}, arguments);  // bad values before long loading
-  Input loaded = load_input(input);
+  Input loaded = load_input(input, load_options_of(arguments));
   Scene& scene = loaded.scene;
   check_scene(scene, loaded.name);
   Console console(arguments);

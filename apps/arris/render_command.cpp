@@ -122,7 +122,7 @@ int run_render(const Arguments& arguments) {
   RenderStats stats;
 
   const Stopwatch load;
-  Input loaded = load_input(request.input);
+  Input loaded = load_input(request.input, request.load);
   check_scene(loaded.scene, loaded.name);  // before staging adds what is not the file's
   if (loaded.is_scene_file) request.stage.source = StageOptions::Source::scene_file;
   const StagingReport staging = apply_request(loaded.scene, request, arguments);

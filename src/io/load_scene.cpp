@@ -9,6 +9,7 @@
 #include "arris/io.h"
 #include "base/nearest_name.h"
 #include "base/utf8_text.h"
+#include "io/csg_reader.h"
 #include "io/file_bytes.h"
 #include "io/file_kind.h"
 #include "io/gltf_buffers.h"
@@ -24,6 +25,7 @@ namespace fs = std::filesystem;
 
 struct SceneFile {
   const fs::path& path;
+  const LoadOptions& options;
   std::string name;  // the path as text, for errors
   std::span<const std::uint8_t> bytes;
 };
@@ -47,10 +49,17 @@ constexpr Format kFormats[] = {
      [](const SceneFile& f) { return read_gltf(f.bytes, f.name, f.path.parent_path()); }, is_glb},
     {".gltf", "glTF",
      [](const SceneFile& f) { return read_gltf(f.bytes, f.name, f.path.parent_path()); }, nullptr},
+    {".csg", "CSG",
+     [](const SceneFile& f) {
+       return read_csg(f.bytes, f.name, csg_files_beside(f.path), f.options);
+     },
+     nullptr},
+    {".scad", "OpenSCAD", [](const SceneFile& f) { return read_scad(f.path, f.options); }, nullptr},
     {".toml", "TOML",
      [](const SceneFile& f) {
        const std::string_view text(reinterpret_cast<const char*>(f.bytes.data()), f.bytes.size());
-       return read_toml_scene(text, f.name, f.path.parent_path(), load_scene);
+       return read_toml_scene(text, f.name, f.path.parent_path(),
+                              [&](const fs::path& path) { return load_scene(path, f.options); });
      },
      nullptr},
 };
@@ -120,10 +129,10 @@ std::vector<std::string> scene_extensions() {
   return extensions;
 }
 
-Scene load_scene(const fs::path& path) {
+Scene load_scene(const fs::path& path, const LoadOptions& options) {
   const Format& format = format_of(path);
   const std::vector<std::uint8_t> bytes = read_file_bytes(path);
-  const SceneFile file{path, path.string(), bytes};
+  const SceneFile file{path, options, path.string(), bytes};
   if (bytes.empty()) throw Error(Error::Kind::input, file.name, "is empty; a model is needed");
   check_content(format, file);
   return format.read(file);
@@ -146,9 +155,9 @@ std::string find_scene_extension(std::span<const std::uint8_t> bytes, const std:
 }
 
 Scene read_scene(std::span<const std::uint8_t> bytes, const std::string& extension,
-                 const std::string& name) {
+                 const std::string& name, const LoadOptions& options) {
   const fs::path path(name);
-  return format_of(fs::path(name + extension)).read({path, name, bytes});
+  return format_of(fs::path(name + extension)).read({path, options, name, bytes});
 }
 
 }  // namespace arris

@@ -8,6 +8,7 @@
 #include <span>
 #include <string>
 
+#include "arris/io.h"
 #include "arris/scene.h"
 
 namespace arris {
@@ -16,6 +17,6 @@ namespace arris {
 std::string find_scene_extension(std::span<const std::uint8_t> bytes, const std::string& name);
 
 Scene read_scene(std::span<const std::uint8_t> bytes, const std::string& extension,
-                 const std::string& name);
+                 const std::string& name, const LoadOptions& options = {});
 
 }  // namespace arris

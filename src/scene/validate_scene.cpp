@@ -13,6 +13,7 @@
 #include "arris/render.h"
 #include "scene/limits.h"
 #include "scene/scene_bounds.h"
+#include "scene/validate_csg.h"
 
 namespace arris {
 namespace {
@@ -256,7 +257,11 @@ void check_object(const Scene& scene, std::size_t index, Problems& problems) {
   const Object& object = scene.objects[index];
   const std::string where = object.name.empty() ? fmt::format("object {}", index)
                                                 : fmt::format("object \"{}\"", object.name);
-  if (object.mesh.index >= scene.meshes.size()) {
+  if (object.csg && object.csg->index >= scene.csg_trees.size()) {
+    problems.push_back(fmt::format("{}: uses CSG tree {}, but there are {}", where,
+                                   object.csg->index, scene.csg_trees.size()));
+  }
+  if (!object.csg && object.mesh.index >= scene.meshes.size()) {
     problems.push_back(fmt::format("{}: uses mesh {}, but there are {}", where, object.mesh.index,
                                    scene.meshes.size()));
   }
@@ -418,6 +423,9 @@ std::vector<std::string> validate_scene(const Scene& scene) {
   }
   for (std::size_t i = 0; i < scene.meshes.size(); ++i) {
     check_mesh(scene, i, problems);
+  }
+  for (std::size_t i = 0; i < scene.csg_trees.size(); ++i) {
+    check_csg_tree(scene, i, problems);
   }
   for (std::size_t i = 0; i < scene.materials.size(); ++i) {
     check_material(scene, i, problems);

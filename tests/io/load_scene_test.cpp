@@ -37,7 +37,7 @@ class LoadScene : public testing::Test {
     return path;
   }
   std::string message_of(const std::filesystem::path& path) {
-    return test::error_message(load_scene, path);
+    return test::error_message([](const auto& p) { return load_scene(p); }, path);
   }
 
   test::TemporaryFolder folder_;
