@@ -1,7 +1,7 @@
 // csg_evaluator.h — nodes of a .csg file to exact shapes
 // What       docs/openscad.md says what becomes of each node
-// Errors     what is wrong in a node's arguments is thrown at once; what can't be made is collected, so that one message
-//            names all of it
+// Errors     what is wrong in a node's arguments is thrown at once; what can't be made is collected, so that
+//            one message names all of it
 // Limits     kMaxCsgVertices vertices made of facets in one file, kMaxScadDepth nested nodes
 #pragma once
 

@@ -1,7 +1,7 @@
 // csg_extrude.h — plane shapes swept along z and about it
-// What       linear_extrude and rotate_extrude of OpenSCAD. Operations in the plane become the same operations of solids,
-//            so that circles sweep cylinders, cones, tori and spheres. Only twisted outlines, and turned ones with facets,
-//            are cut into triangles, as OpenSCAD does it.
+// What       linear_extrude and rotate_extrude of OpenSCAD. Operations in the plane become the same operations
+//            of solids, so that circles sweep cylinders, cones, tori and spheres. Only twisted outlines, and
+//            turned ones with facets, are cut into triangles, as OpenSCAD does it.
 // Guarantee  what is taken away, or intersected with, reaches beyond the faces that end the first shape: they never
 //            coincide
 // Errors     ScadUnsupported for outlines that have no triangulation

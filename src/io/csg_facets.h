@@ -1,6 +1,6 @@
 // csg_facets.h — OpenSCAD's facets of round things
-// What       fragments(): how many a full circle has; the points of spheres and cylinders as OpenSCAD cuts them: a sphere's
-//            rings lie half a step off its poles, so that it has no vertex there
+// What       fragments(): how many a full circle has; the points of spheres and cylinders as OpenSCAD cuts
+//            them: a sphere's rings lie half a step off its poles, so that it has no vertex there
 // Source     OpenSCAD 2021.01: $fn > 0 without its fraction and at least 3, else by $fa (degrees) and $fs (length)
 #pragma once
 

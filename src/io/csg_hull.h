@@ -1,6 +1,6 @@
 // csg_hull.h — convex solids: hulls of points, of balls and of discs
-// What       hull_of_points() a polyhedron; hull_of_balls() and hull_of_discs() exact round shapes, where they can be put
-//            together from primitives: balls of one radius, two balls, any discs
+// What       hull_of_points() a polyhedron; hull_of_balls() and hull_of_discs() exact round shapes, where they
+//            can be put together from primitives: balls of one radius, two balls, any discs
 // Guarantee  every point given lies in the hull to within 1e-12 of its size; faces that six-digit numbers bend by less
 //            than 2e-6 of the size are one (tests/io/csg_hull_test.cpp)
 // Limits     hulls without volume are nothing

@@ -1,6 +1,6 @@
 // csg_mesh.h — closed meshes of .csg files: swept outlines, polyhedra as they are written
 // Guarantee  every edge is walked as often in one direction as in the other; no triangle has two equal corners
-//            (tests/io/csg_mesh_test.cpp)
+//            (tests/io/csg_reader_test.cpp)
 // Errors     sweep_mesh(): ScadUnsupported for outlines without a triangulation
 #pragma once
 

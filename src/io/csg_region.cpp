@@ -58,7 +58,7 @@ bool is_convex(const CsgRegion& region) {
     if (side < 0) return false;
     turn += std::atan2(side, (b.x - a.x) * (c.x - b.x) + (b.y - a.y) * (c.y - b.y));
   }
-  return o.size() >= 3 && std::abs(turn - 2 * kPi) < 1;
+  return o.size() >= 3 && std::abs(turn - 2 * kPi) < 1 && signed_area(o) > 0;
 }
 
 // Sutherland and Hodgman: edges along the axis may double back, and wind round nothing.

@@ -14,7 +14,7 @@
 
 namespace arris {
 
-inline constexpr std::uint64_t kMaxRegionWork = 300'000'000;
+inline constexpr std::uint64_t kMaxRegionWork = 100'000'000;
 
 using Outline = std::vector<Vec2d>;
 

@@ -1,7 +1,7 @@
 // csg_shape.h — plane and solid shapes while a .csg file is read: trees of leaves and operations
-// What       FlatShape: discs (circles and ellipses, kept exact) and outlines; SolidShape: leaves of a CsgTree. combine()
-//            makes an operation of shapes as OpenSCAD does: what is empty is left out, or makes the whole empty;
-//            unions of unions are one
+// What       FlatShape: discs (circles and ellipses, kept exact) and outlines; SolidShape: leaves of a
+//            CsgTree. combine() makes an operation of shapes as OpenSCAD does: what is empty is left out, or
+//            makes the whole empty; unions of unions are one
 #pragma once
 
 #include <algorithm>
