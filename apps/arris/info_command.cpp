@@ -44,13 +44,22 @@ nlohmann::ordered_json to_json(const RoundingSummary& r) {
 }
 
 nlohmann::ordered_json to_json(const ObjectReport& o, const RoundingSummary* rounding) {
-  nlohmann::ordered_json json{
-      {"name", o.name},     {"triangles", o.triangles},  {"vertices", o.vertices},
-      {"shells", o.shells}, {"edges", to_json(o.edges)}, {"closed", o.closed},
-      {"convex", o.convex}};
-  json["inradius"] = o.inradius ? nlohmann::ordered_json(*o.inradius) : nullptr;
+  nlohmann::ordered_json json{{"name", o.name}};
+  if (o.csg) {
+    json["csg"] = {{"primitives", o.csg->primitives},
+                   {"operations", o.csg->operations},
+                   {"depth", o.csg->depth}};
+  } else {
+    json.update({{"triangles", o.triangles},
+                 {"vertices", o.vertices},
+                 {"shells", o.shells},
+                 {"edges", to_json(o.edges)},
+                 {"closed", o.closed},
+                 {"convex", o.convex}});
+    json["inradius"] = o.inradius ? nlohmann::ordered_json(*o.inradius) : nullptr;
+  }
   json["bounds"] = {{"min", to_json(o.bounds_min)}, {"max", to_json(o.bounds_max)}};
-  json["degenerate_triangles"] = o.degenerate_triangles;
+  if (!o.csg) json["degenerate_triangles"] = o.degenerate_triangles;
   json["rounding"] = rounding != nullptr ? to_json(*rounding) : nlohmann::ordered_json(nullptr);
   return json;
 }
@@ -75,9 +84,14 @@ std::string format_bounds(Vec3d lower, Vec3d upper) {
       size.y, size.z, lower.x, lower.y, lower.z, upper.x, upper.y, upper.z);
 }
 
-void print_object(const ObjectReport& object, const RoundingSummary* rounding) {
+void print_csg(const ObjectReport& object) {
+  fmt::print("  solid       {} {} in {} {}, {} deep; exact surfaces\n", object.csg->primitives,
+             object.csg->primitives == 1 ? "primitive" : "primitives", object.csg->operations,
+             object.csg->operations == 1 ? "operation" : "operations", object.csg->depth);
+}
+
+void print_mesh(const ObjectReport& object) {
   const EdgeCounts& e = object.edges;
-  fmt::print("\n{}\n", object.name.empty() ? "(no name)" : object.name);
   fmt::print("  triangles   {} on {} vertices, in {} {}\n", object.triangles, object.vertices,
              object.shells, object.shells == 1 ? "piece" : "pieces");
   if (object.degenerate_triangles > 0) {
@@ -91,7 +105,13 @@ void print_object(const ObjectReport& object, const RoundingSummary* rounding) {
   fmt::print("\n  shape       {}, {}", object.closed ? "closed" : "not closed",
              object.convex ? "convex" : "not convex");
   if (object.inradius) fmt::print(", inradius {:.6g}", *object.inradius);
-  fmt::print("\n  size        {}\n", format_bounds(object.bounds_min, object.bounds_max));
+  fmt::print("\n");
+}
+
+void print_object(const ObjectReport& object, const RoundingSummary* rounding) {
+  fmt::print("\n{}\n", object.name.empty() ? "(no name)" : object.name);
+  object.csg ? print_csg(object) : print_mesh(object);
+  fmt::print("  size        {}\n", format_bounds(object.bounds_min, object.bounds_max));
   if (rounding == nullptr || rounding->radius == 0) {
     fmt::print("  rounding    none\n");
   } else {

@@ -3,6 +3,8 @@
 //            a cube: axis-aligned boxes are such, and a beam renderer bounds pieces of its pyramids by slanted ones.
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <cstdint>
 
 #include "arris/math.h"
@@ -38,6 +40,16 @@ struct Box3d {
     return {max(a.low, b.low), min(a.high, b.high)};
   }
 };
+
+// Each bit of the index chooses one end of an axis.
+inline std::array<Vec3d, 8> corners_of(const Box3d& box) {
+  std::array<Vec3d, 8> corners;
+  for (std::size_t i = 0; i < 8; ++i) {
+    corners[i] = {(i & 1U) != 0 ? box.high.x : box.low.x, (i & 2U) != 0 ? box.high.y : box.low.y,
+                  (i & 4U) != 0 ? box.high.z : box.low.z};
+  }
+  return corners;
+}
 
 // All points center + Σ u_i · half[i] with |u_i| ≤ 1. Intervals, as a cell is mapped into frames of primitives.
 struct SpaceCell {

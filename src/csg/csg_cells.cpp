@@ -1,6 +1,7 @@
 #include "csg/csg_cells.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <limits>
 
@@ -17,6 +18,8 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kMargin = 1e-9;
 // Cells with many leaves may be halved so often in a row without gain.
 constexpr std::uint32_t kPatience = 3;
+// Halving pays if it takes a cell's expected cost to this part.
+constexpr double kGain = 0.9;
 // What a cell costs a ray besides its leaves, in leaves.
 constexpr double kCellCost = 1;
 
@@ -41,6 +44,7 @@ class Divider {
  public:
   Divider(const CsgSolid& solid, const CellOptions& options) : solid_(solid), options_(options) {
     const Box3d& b = solid.bounds();
+    max_depth_ = options.more_depth + std::uint32_t(std::bit_width(solid.root().leaves().size()));
     margin_ = kMargin * std::max({max_component(b.high), max_component(-b.low), 0.0});
   }
 
@@ -94,7 +98,7 @@ class Divider {
       part.bounds.high[axis] = at + margin_;
     }
     const SpaceCell cell = make_cell(part.bounds);
-    part.expression = whole.expression.prune(solid_.covers_of(whole.expression, cell));
+    part.expression = solid_.prune(whole.expression, cell);
     if (part.expression.is_decided()) return std::nullopt;
     part.bounds = surface_bounds(part);
     if (part.bounds.is_empty()) return std::nullopt;
@@ -114,7 +118,7 @@ class Divider {
     const int axis =
         extent.x > extent.y ? (extent.x > extent.z ? 0 : 2) : (extent.y > extent.z ? 1 : 2);
     const double at = whole.bounds.low[axis] * 0.5 + whole.bounds.high[axis] * 0.5;
-    if (count <= options_.few || depth >= options_.max_depth || extent[axis] < 64 * margin_) {
+    if (count <= options_.few || depth >= max_depth_ || extent[axis] < 64 * margin_) {
       return finish(std::move(whole));
     }
     double cost = 0;
@@ -124,7 +128,7 @@ class Divider {
         parts.push_back(std::move(*part));
       }
     }
-    const bool pays = cost < cost_of(whole);
+    const bool pays = cost < kGain * cost_of(whole);
     if (!pays && (count <= options_.many || whole.patience == 0)) return finish(std::move(whole));
     for (Draft& part : parts) part.patience = pays ? kPatience : whole.patience - 1;
     return parts;
@@ -133,6 +137,7 @@ class Divider {
   const CsgSolid& solid_;
   const CellOptions& options_;
   double margin_ = 0;
+  std::uint32_t max_depth_ = 0;
 };
 
 }  // namespace

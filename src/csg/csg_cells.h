@@ -33,7 +33,8 @@ struct CellOptions {
   int threads = 0;         // 0: all
   std::uint32_t few = 2;   // cells with as many leaves are not halved
   std::uint32_t many = 8;  // up to here halving must pay at once; beyond, after a few times
-  std::uint32_t max_depth = 60;
+  // Halvings beyond those that part n leaves: along curves where surfaces meet, halving pays for ever, and the cells double.
+  std::uint32_t more_depth = 14;
 };
 
 class CsgCells {

@@ -27,6 +27,8 @@ class CsgExpression {
  public:
   // Empty set.
   CsgExpression() = default;
+  // Decided: everything or nothing. Precondition: not on.
+  explicit CsgExpression(Cover decided) : decided_(decided) {}
   // Of the tree's root. `exists`, by leaf: leaves without points are left out. Throws Error{input} for nodes or leaves
   // that aren't there, children above their parent, and trees that branch into more than kMaxSteps.
   CsgExpression(const CsgTree& tree, const std::vector<bool>& exists);

@@ -32,6 +32,50 @@ std::vector<Cover> CsgSolid::covers_of(const CsgExpression& expression,
   return covers;
 }
 
+namespace {
+
+// The value of an expression whose leaves are each on one side of a surface, where leaves may share one; on if it
+// depends. Slots: the surfaces by number, in ascending order of first use.
+Cover value_over_surfaces(const CsgExpression& expression,
+                          const std::vector<std::optional<SoleSurface>>& sole) {
+  std::vector<SoleSurface> surfaces;
+  std::vector<std::uint32_t> bit;
+  for (std::uint32_t slot = 0; slot < sole.size(); ++slot) {
+    std::uint32_t i = 0;
+    while (i < surfaces.size() && !(sole[slot] && surfaces[i].kind == sole[slot]->kind &&
+                                    surfaces[i].index == sole[slot]->index)) {
+      ++i;
+    }
+    // Leaves with more than one surface get a number that no other has.
+    if (i == surfaces.size())
+      surfaces.push_back(sole[slot].value_or(SoleSurface{SoleSurface::Kind::other, slot, false}));
+    bit.push_back(i);
+  }
+  if (surfaces.size() == sole.size()) return Cover::on;
+  bool any_in = false, any_out = false;
+  for (std::uint64_t state = 0; state < (std::uint64_t{1} << surfaces.size()); ++state) {
+    const bool in = expression.eval([&](std::uint32_t slot) {
+      return (((state >> bit[slot]) & 1) != 0) != (sole[slot] && sole[slot]->flipped);
+    });
+    (in ? any_in : any_out) = true;
+  }
+  return any_in && any_out ? Cover::on : any_in ? Cover::in : Cover::out;
+}
+
+}  // namespace
+
+CsgExpression CsgSolid::prune(const CsgExpression& expression, const SpaceCell& cell) const {
+  CsgExpression pruned = expression.prune(covers_of(expression, cell));
+  const std::size_t count = pruned.leaves().size();
+  if (count < 2 || count > kTruthLeaves) return pruned;
+  std::vector<std::optional<SoleSurface>> sole;
+  for (const std::uint32_t leaf : pruned.leaves()) {
+    sole.push_back(sole_surface_of(leaves_[leaf], surfaces_, cell));
+  }
+  const Cover value = value_over_surfaces(pruned, sole);
+  return value == Cover::on ? pruned : CsgExpression(value);
+}
+
 std::vector<Box3d> CsgSolid::boxes_of(const CsgExpression& expression) const {
   std::vector<Box3d> boxes;
   boxes.reserve(expression.leaves().size());

@@ -1,8 +1,9 @@
 // csg_solid.h — a tree of solids prepared for evaluation
 // What       leaves placed, coincident surfaces made one, the tree flattened to an expression. Renderers ask for the
 //            boundaries along a ray, or for what of the tree is undecided in a piece of space:
-//                covers = solid.covers_of(expression, cell);  pruned = expression.prune(covers);
-//            and hand the pruned expression to the parts of that piece.
+//                pruned = solid.prune(expression, cell);
+//            and hand the pruned expression to the parts of that piece. Leaves of which one and the same surface is left in
+//            the cell count as one there: A - A is out also where A's face passes through.
 // Frames     the tree's own space
 // Guarantee  in and out of covers_of() are certain. A boundary's t, leaf and face don't depend on what else is in the
 //            expression, as long as that says the same near it (tests/csg/cells_test.cpp: to the last bit)
@@ -48,6 +49,7 @@ class CsgSolid {
   // By index of expression.leaves().
   [[nodiscard]] std::vector<Cover> covers_of(const CsgExpression& expression,
                                              const SpaceCell& cell) const;
+  [[nodiscard]] CsgExpression prune(const CsgExpression& expression, const SpaceCell& cell) const;
   [[nodiscard]] std::vector<Box3d> boxes_of(const CsgExpression& expression) const;
   // On the surface either answer may come.
   [[nodiscard]] bool contains(const CsgExpression& expression, Vec3d p) const;

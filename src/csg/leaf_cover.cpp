@@ -251,6 +251,22 @@ double distance_to_core(const RoundedLeaf& leaf, Vec3d p) {
 Cover cover_of(const PlacedLeaf& leaf, const SurfaceTable& surfaces, const SpaceCell& cell) {
   return std::visit(CoverVisitor{surfaces, cell}, leaf.shape);
 }
+std::optional<SoleSurface> sole_surface_of(const PlacedLeaf& leaf, const SurfaceTable& surfaces,
+                                           const SpaceCell& cell) {
+  const auto* convex = std::get_if<ConvexLeaf>(&leaf.shape);
+  if (convex == nullptr) return std::nullopt;
+  std::optional<SoleSurface> sole;
+  for (const PlaneRef& plane : convex->planes) {
+    if (cover_of_height(surfaces.height_over(plane, cell)) == Cover::in) continue;
+    if (sole) return std::nullopt;
+    sole = SoleSurface{SoleSurface::Kind::plane, plane.plane, plane.flipped};
+  }
+  if (convex->quadric && cover_of_height(surfaces.value_of(*convex->quadric, cell)) != Cover::in) {
+    if (sole) return std::nullopt;
+    sole = SoleSurface{SoleSurface::Kind::quadric, *convex->quadric, false};
+  }
+  return sole;
+}
 bool contains(const PlacedLeaf& leaf, const SurfaceTable& surfaces, Vec3d p) {
   return std::visit(ContainsVisitor{surfaces, p}, leaf.shape);
 }

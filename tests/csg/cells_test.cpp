@@ -152,6 +152,24 @@ TEST(csg_cells, coincident_faces_are_decided_once) {
   }
 }
 
+// Also in pieces of space: where boxes touch there is no wall, where one is taken from itself there is nothing.
+TEST(csg_cells, coincident_faces_are_pruned) {
+  const auto pruned = [](const CsgTree& tree, const Box3d& box) {
+    const CsgSolid solid(tree);
+    return solid.prune(solid.root(), make_cell(box)).value();
+  };
+  const CsgLeaf a{CsgBox{Vec3d(0), Vec3d(1)}, {}, {}};
+  const CsgLeaf b{CsgBox{{1, 0, 0}, {2, 1, 1}}, {}, {}};
+  const CsgLeaf rod{CsgCone{0, 1, 1, 1}, {}, {}}, longer{CsgCone{-1, 2, 1, 1}, {}, {}};
+  const Box3d at_face{{0.9, 0.4, 0.4}, {1.1, 0.6, 0.6}}, at_rim{{0.9, 0, 0.4}, {1.1, 0.1, 0.6}};
+  EXPECT_EQ(pruned(flat_tree(CsgOperation::unite, {a, b}), at_face), Cover::in);
+  EXPECT_EQ(pruned(flat_tree(CsgOperation::intersect, {a, b}), at_face), Cover::out);
+  EXPECT_EQ(pruned(flat_tree(CsgOperation::subtract, {a, a}), at_face), Cover::out);
+  EXPECT_EQ(pruned(flat_tree(CsgOperation::subtract, {a, b}), at_face), Cover::on);
+  EXPECT_EQ(pruned(flat_tree(CsgOperation::subtract, {rod, longer}), at_rim), Cover::out);
+  EXPECT_EQ(pruned(flat_tree(CsgOperation::unite, {rod, longer}), at_rim), Cover::on);
+}
+
 TEST(csg_cells, different_primitives_share_their_faces) {
   // A cylinder, a prism, a mesh and a cone on a box: only the outline is left.
   const CsgRegion square{{{{0, 0}, {1, 0}, {1, 1}, {0, 1}}}};
