@@ -95,6 +95,13 @@ inline Interval linear_range(const SpaceCell& cell, Vec3d normal) {
   return {next_down(middle.lo - reach.hi), next_up(middle.hi + reach.hi)};
 }
 
+// Holds the cell.
+inline Box3d box_of(const SpaceCell& cell) {
+  const Interval x = linear_range(cell, {1, 0, 0}), y = linear_range(cell, {0, 1, 0}),
+                 z = linear_range(cell, {0, 0, 1});
+  return {{x.lo, y.lo, z.lo}, {x.hi, y.hi, z.hi}};
+}
+
 // The values of Σ weights_i x_i² over the cell. Exact but for rounding where the half axes are orthogonal under the
 // weights (boxes under similarities; along the axis for cylinders), else too wide by the square of the cell's size.
 Interval quadratic_range(const SpaceCell& cell, Vec3d weights);

@@ -28,7 +28,12 @@ std::vector<Cover> CsgSolid::covers_of(const CsgExpression& expression,
                                        const SpaceCell& cell) const {
   std::vector<Cover> covers;
   covers.reserve(expression.leaves().size());
-  for (const std::uint32_t leaf : expression.leaves()) covers.push_back(cover_of(leaf, cell));
+  const Box3d box = box_of(cell);
+  for (const std::uint32_t leaf : expression.leaves()) {
+    // Most leaves are elsewhere, which plain comparisons tell.
+    const bool apart = intersection(leaves_[leaf].bounds, box).is_empty();
+    covers.push_back(apart ? Cover::out : cover_of(leaf, cell));
+  }
   return covers;
 }
 

@@ -18,8 +18,7 @@ namespace arris {
 namespace {
 
 // The callbacks of Embree's threads see what was written before the build.
-struct BoxUser {
-  const BoxGeometry* boxes;
+struct BoxUser : BoxGeometry {
   HappensBefore written;
 };
 
@@ -138,9 +137,9 @@ unsigned attach_instance(RTCDevice device, RTCScene scene, RTCScene instanced, c
 }
 
 void box_bounds(const RTCBoundsFunctionArguments* args) {
-  auto* user = static_cast<BoxUser*>(args->geometryUserPtr);
+  auto* user = static_cast<BoxUser*>(static_cast<BoxGeometry*>(args->geometryUserPtr));
   user->written.acquire();
-  const Box3f& box = user->boxes->boxes[args->primID];
+  const Box3f& box = user->boxes[args->primID];
   RTCBounds* bounds = args->bounds_o;
   bounds->lower_x = box.lower.x;
   bounds->lower_y = box.lower.y;
@@ -150,11 +149,11 @@ void box_bounds(const RTCBoundsFunctionArguments* args) {
   bounds->upper_z = box.upper.z;
 }
 
-unsigned attach_boxes(RTCDevice device, RTCScene scene, const BoxGeometry& boxes, BoxUser& user) {
+unsigned attach_boxes(RTCDevice device, RTCScene scene, BoxUser& boxes) {
   RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_USER);
   rtcSetGeometryUserPrimitiveCount(geometry, unsigned(boxes.boxes.size()));
-  rtcSetGeometryUserData(geometry, const_cast<void*>(boxes.user));
-  rtcSetGeometryBoundsFunction(geometry, box_bounds, &user);
+  rtcSetGeometryUserData(geometry, static_cast<BoxGeometry*>(&boxes));
+  rtcSetGeometryBoundsFunction(geometry, box_bounds, nullptr);
   rtcSetGeometryIntersectFunction(geometry, boxes.intersect);
   rtcSetGeometryOccludedFunction(geometry, boxes.occluded);
   rtcCommitGeometry(geometry);
@@ -240,7 +239,7 @@ GeometryRecord make_box_record(const Scene& scene, const BoxGeometry& boxes) {
 
 EmbreeScene::EmbreeScene(const Scene& scene, const EmbreeSceneOptions& options,
                          std::vector<BoxGeometry> boxes)
-    : device_(std::make_unique<Device>(options.threads)), boxes_(std::move(boxes)) {
+    : device_(std::make_unique<Device>(options.threads)) {
   const std::vector<bool> instanced = choose_instanced(scene, options.max_copied_triangles);
   device_->mesh_scenes.resize(scene.meshes.size());
   RTCScene top = make_scene(device_->handle);
@@ -279,15 +278,15 @@ EmbreeScene::EmbreeScene(const Scene& scene, const EmbreeSceneOptions& options,
     records_.resize(std::max<std::size_t>(records_.size(), id + 1));
     records_[id] = record;
   }
-  device_->box_users.resize(boxes_.size());
-  for (std::size_t i = 0; i < boxes_.size(); ++i) {
+  device_->box_users.resize(boxes.size());
+  for (std::size_t i = 0; i < boxes.size(); ++i) {
     BoxUser& user = device_->box_users[i];
-    user.boxes = &boxes_[i];
+    static_cast<BoxGeometry&>(user) = std::move(boxes[i]);
     user.written.release();
-    const unsigned id = attach_boxes(device_->handle, top, boxes_[i], user);
+    const unsigned id = attach_boxes(device_->handle, top, user);
     box_records_.push_back(id);
     records_.resize(std::max<std::size_t>(records_.size(), id + 1));
-    records_[id] = make_box_record(scene, boxes_[i]);
+    records_[id] = make_box_record(scene, user);
   }
   commit(device_->handle, top);
 }

@@ -51,8 +51,8 @@ struct Box3f {
   Vec3f lower, upper;
 };
 
-// A geometry of boxes: rays that may meet one are handed to the callbacks, which find in `user` what is in it. Its record
-// has no triangles.
+// A geometry of boxes: rays that may meet one are handed to the callbacks, whose geometryUserPtr is the
+// BoxGeometry: in `user` they find what is in the box. Its record has no triangles.
 struct BoxGeometry {
   ObjectId object;
   std::vector<Box3f> boxes;  // world space
@@ -88,7 +88,6 @@ class EmbreeScene {
   std::unique_ptr<Device> device_;
   RTCSceneTy* handle_ = nullptr;
   std::vector<GeometryRecord> records_;
-  std::vector<BoxGeometry> boxes_;
   std::vector<std::uint32_t> box_records_;
 };
 

@@ -79,9 +79,13 @@ bool passes_filter(RTCRay& ray, const RTCHit& hit, float t, const Filter& filter
   return valid != 0;
 }
 
+const CsgObject& object_of(const void* geometry_user) {
+  return *static_cast<const CsgObject*>(static_cast<const BoxGeometry*>(geometry_user)->user);
+}
+
 void intersect_cell(const RTCIntersectFunctionNArguments* args) {
   if (args->valid[0] != -1) return;
-  const auto& object = *static_cast<const CsgObject*>(args->geometryUserPtr);
+  const CsgObject& object = object_of(args->geometryUserPtr);
   auto& query = *reinterpret_cast<RTCRayHit*>(args->rayhit);
   visit_cell(object, query.ray, *args->context, args->geomID, args->primID,
              [&](const RTCHit& hit, float t) {
@@ -101,7 +105,7 @@ void intersect_cell(const RTCIntersectFunctionNArguments* args) {
 
 void occluded_cell(const RTCOccludedFunctionNArguments* args) {
   if (args->valid[0] != -1) return;
-  const auto& object = *static_cast<const CsgObject*>(args->geometryUserPtr);
+  const CsgObject& object = object_of(args->geometryUserPtr);
   auto& ray = *reinterpret_cast<RTCRay*>(args->ray);
   visit_cell(object, ray, *args->context, args->geomID, args->primID,
              [&](const RTCHit& hit, float t) {

@@ -79,13 +79,12 @@ TEST(csg_scene, hits_are_those_of_the_solid_for_any_placement) {
         if (b.t > 0 && (first == nullptr || b.t < first->t)) first = &b;
       }
       const auto hit = prepared->intersect(ray);
-      ASSERT_EQ(hit.has_value(), first != nullptr);
-      if (!hit) continue;
+      ASSERT_EQ(hit && hit->object.index == 0, first != nullptr);
+      if (first == nullptr) continue;
       ASSERT_EQ(hit->t, float(first->t));
       ASSERT_EQ(hit->feature, Feature::csg);
       ASSERT_EQ(hit->material, tree.leaves[first->leaf].material);
       ASSERT_EQ(hit->side == Side::outside, first->entering);
-      ASSERT_EQ(hit->object.index, 0U);
       ASSERT_EQ(hit->side == Side::outside, dot(ray.direction, hit->geometric_normal) < 0);
       TraceRay shadow = ray;
       shadow.t_max = hit->t * 0.9999F;
