@@ -1,7 +1,8 @@
 // bench_csg — what rays through CSG solids cost
 // What       growth: random solids of 10² to 10⁵ primitives in a cube, differences among them; holes: a plate with 400
-//            holes as one difference against 400 tiles with a hole each, and against the plate alone. Times are of closest
-//            hits and of occlusion, in rounds in which every scene has its turn; ratios pair times of one round.
+//            holes as one difference against 400 tiles with a hole each, and against the plate alone. Times are of
+//            closest hits and of occlusion, in rounds in which every scene has its turn; ratios pair times of one
+//            round.
 // Usage      bench_csg [--rounds N] [--rays N] [--largest N]
 #include <fmt/format.h>
 

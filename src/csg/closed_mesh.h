@@ -1,7 +1,7 @@
 // closed_mesh.h — a closed triangle mesh as a solid: winding number not 0
 // What       crossings of a line with their sense, membership, and whether a box meets a triangle; by a tree of boxes
-// Guarantee  each edge is crossed on one side only: of a closed mesh a line's crossings always add up to 0, but for lines
-//            through the very vertex
+// Guarantee  each edge is crossed on one side only: of a closed mesh a line's crossings always add up to 0, but for
+//            lines through the very vertex
 // Source     Woop, Benthin, Wald, "Watertight Ray/Triangle Intersection", JCGT 2013: shear along the largest axis; in
 //            double, and an edge function of 0 counts as positive for the edge's lower vertex first
 // Cost       a line about linear in what it crosses

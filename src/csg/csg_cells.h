@@ -1,14 +1,14 @@
 // csg_cells.h — a solid cut into cells in which few of its leaves matter
-// What       the bounds are halved until the part of the tree that is undecided in a cell is small, or halving no longer
-//            helps; cells that are wholly inside or outside hold no surface and are dropped. A ray meets the boxes of the
-//            cells (some other structure finds them) and evaluates the few leaves of each.
-// Guarantee  the cells' own boxes are disjoint, half-open, and hold every boundary in exactly one: nothing falls between
-//            two, and nothing is met twice. What the cells find is what the whole tree finds, to the last bit
+// What       the bounds are halved until the part of the tree that is undecided in a cell is small, or halving no
+//            longer helps; cells that are wholly inside or outside hold no surface and are dropped. A ray meets the
+//            boxes of the cells (some other structure finds them) and evaluates the few leaves of each.
+// Guarantee  the cells' own boxes are disjoint, half-open, and hold every boundary in exactly one: nothing falls
+//            between two, and nothing is met twice. What the cells find is what the whole tree finds, to the last bit
 //            (tests/csg/cells_test.cpp). The same cells at any number of threads.
 // Limits     where many leaves' surfaces meet in a point, halving ends with all of them in a cell
 // Errors     Error{input} naming the tree if nothing bounds it
-// Cost       building: about n log n leaf classifications, parallel. A difference of n separate holes makes as many cells as
-//            a union of n tiles.
+// Cost       building: about n log n leaf classifications, parallel. A difference of n separate holes makes as many
+//            cells as a union of n tiles.
 #pragma once
 
 #include <cstdint>
@@ -33,7 +33,8 @@ struct CellOptions {
   int threads = 0;         // 0: all
   std::uint32_t few = 2;   // cells with as many leaves are not halved
   std::uint32_t many = 8;  // up to here halving must pay at once; beyond, after a few times
-  // Halvings beyond those that part n leaves: along curves where surfaces meet, halving pays for ever, and the cells double.
+  // Halvings beyond those that part n leaves: along curves where surfaces meet, halving pays for ever, and the
+  // cells double.
   std::uint32_t more_depth = 14;
 };
 

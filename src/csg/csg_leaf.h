@@ -92,8 +92,8 @@ Box3d bounds_of(const CsgLeaf& leaf);
 
 // Where the leaf lies relative to a cell: in and out are certain. `surfaces` is the table it was placed with.
 Cover cover_of(const PlacedLeaf& leaf, const SurfaceTable& surfaces, const SpaceCell& cell);
-// The one surface of the table that is left of a leaf in a cell, if that is all: inside is where the plane's height or the
-// quadric's value is negative, or positive if flipped.
+// The one surface of the table that is left of a leaf in a cell, if that is all: inside is where the plane's height
+// or the quadric's value is negative, or positive if flipped.
 struct SoleSurface {
   enum class Kind : std::uint8_t { plane, quadric, other } kind = Kind::other;
   std::uint32_t index = 0;

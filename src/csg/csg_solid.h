@@ -2,8 +2,8 @@
 // What       leaves placed, coincident surfaces made one, the tree flattened to an expression. Renderers ask for the
 //            boundaries along a ray, or for what of the tree is undecided in a piece of space:
 //                pruned = solid.prune(expression, cell);
-//            and hand the pruned expression to the parts of that piece. Leaves of which one and the same surface is left in
-//            the cell count as one there: A - A is out also where A's face passes through.
+//            and hand the pruned expression to the parts of that piece. Leaves of which one and the same surface is
+//            left in the cell count as one there: A - A is out also where A's face passes through.
 // Frames     the tree's own space
 // Guarantee  in and out of covers_of() are certain. A boundary's t, leaf and face don't depend on what else is in the
 //            expression, as long as that says the same near it (tests/csg/cells_test.cpp: to the last bit)

@@ -60,10 +60,13 @@ struct CoverVisitor {
     const Cover by_quadric =
         leaf.quadric ? cover_of_height(surfaces.value_of(*leaf.quadric, cell)) : Cover::in;
     if (by_quadric == Cover::out || count == 0) return by_quadric;
-    // Beyond an edge: above neither of its planes throughout, but above their sum.
+    // Beyond an edge: above neither of its planes throughout, but above their sum, whose normal is rounded.
+    const Box3d box = box_of(cell);
+    const Vec3d far = max(max(box.high, -box.high), max(box.low, -box.low));
+    const double rounding = count > 1 ? kRounding * (far.x + far.y + far.z) : 0;
     for (std::size_t i = 0; i < std::min(count, kMaxPairs); ++i) {
       for (std::size_t j = 0; j < i; ++j) {
-        if (height_over_both(undecided[i], undecided[j]).lo > 0) return Cover::out;
+        if (height_over_both(undecided[i], undecided[j]).lo > rounding) return Cover::out;
       }
     }
     return Cover::on;
@@ -72,13 +75,7 @@ struct CoverVisitor {
   [[nodiscard]] Interval height_over_both(PlaneRef a, PlaneRef b) const {
     const CsgPlane &p = surfaces.planes()[a.plane], &q = surfaces.planes()[b.plane];
     const double s = a.flipped ? -1 : 1, t = b.flipped ? -1 : 1;
-    const Interval sum =
-        linear_range(cell, p.normal * s + q.normal * t) - Interval(p.d * s) - Interval(q.d * t);
-    // The sum of the normals is rounded.
-    const double reach =
-        (absolute(cell.center.x) + absolute(cell.center.y) + absolute(cell.center.z)).hi +
-        radius_of(cell);
-    return {sum.lo - kRounding * reach, sum.hi + kRounding * reach};
+    return linear_range(cell, p.normal * s + q.normal * t) - Interval(p.d * s) - Interval(q.d * t);
   }
   Cover operator()(const TorusLeaf& leaf) const {
     const SpaceCell own = map_cell(leaf.primitive_from_object, cell);

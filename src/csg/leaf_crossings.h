@@ -3,8 +3,8 @@
 // Guarantee  t depends on ray and surface alone: leaves that share a surface meet it at the same t, to the last bit.
 //            Agrees with contains() but within rounding of the surface (tests/csg/leaf_test.cpp)
 // Limits     a line that only touches a surface may cross it twice or not at all
-// Cost       convex kinds: one dot product for each plane. Prisms and revolutions: linear in the region's edges. Meshes:
-//            about linear in what is crossed. No allocation once the buffers have grown.
+// Cost       convex kinds: one dot product for each plane. Prisms and revolutions: linear in the region's edges.
+//            Meshes: about linear in what is crossed. No allocation once the buffers have grown.
 // Source     intervals: Roth 1982; quadrics from the point nearest to their center, so that nothing cancels
 #pragma once
 

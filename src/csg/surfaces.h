@@ -31,7 +31,8 @@ struct PlaneRef {
   bool flipped = false;
 };
 
-// Where f(unit_from_object · x) < 0 for f = x² + y² + z² - 1 (ellipsoid), x² + y² - 1 (cylinder), x² + y² - z² (double cone).
+// Where f(unit_from_object · x) < 0 for f = x² + y² + z² - 1 (ellipsoid), x² + y² - 1 (cylinder), x² + y² - z²
+// (double cone).
 struct CsgQuadric {
   enum class Form : std::uint8_t { ellipsoid, cylinder, cone };
   Form form = Form::ellipsoid;

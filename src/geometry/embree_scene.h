@@ -7,7 +7,8 @@
 // Limits     float coordinates: a scene far from its origin loses precision in proportion
 // Errors     Error::failed when memory runs out
 // Cost       build linear in the triangles (times log), parallel; const afterwards
-// Embree     its headers are included by embree_scene.cpp and render/embree_hit.h and render/csg_objects.cpp, nowhere else
+// Embree     its headers are included by embree_scene.cpp and render/embree_hit.h and render/csg_objects.cpp,
+//            nowhere else
 #pragma once
 
 #include <cstdint>

@@ -1,12 +1,13 @@
 // csg_objects.h — the CSG solids of a scene among its other geometry
-// What       Each tree is prepared and cut into cells once; every object that is made of it brings the cells' boxes into
-//            Embree's structure. A ray that meets a box is taken into the tree's space in double and evaluates the few leaves
-//            that matter there.
-// Surfaces   A surface shows the material of the leaf that it belongs to, also where that leaf was subtracted: a hole has
-//            the color of what drilled it, as in OpenSCAD's preview. Of coincident faces the first leaf that makes the
-//            difference counts. Glass and opacity belong to the solid: inside a union there are no surfaces.
-// Guarantee  hits are those of the tree along the float ray, in double: no cracks between cells or at coincident faces, and
-//            a ray that leaves a hit by its position_error doesn't meet it again (tests/render/csg_test.cpp)
+// What       Each tree is prepared and cut into cells once; every object that is made of it brings the cells' boxes
+//            into Embree's structure. A ray that meets a box is taken into the tree's space in double and evaluates
+//            the few leaves that matter there.
+// Surfaces   A surface shows the material of the leaf that it belongs to, also where that leaf was subtracted: a
+//            hole has the color of what drilled it, as in OpenSCAD's preview. Of coincident faces the first leaf
+//            that makes the difference counts. Glass and opacity belong to the solid: inside a union there are no
+//            surfaces.
+// Guarantee  hits are those of the tree along the float ray, in double: no cracks between cells or at coincident
+//            faces, and a ray that leaves a hit by its position_error doesn't meet it again (tests/render/csg_test.cpp)
 // Limits     always sharp; emission is found by the rays that meet it, not sampled; no texture coordinates
 // Cost       as Embree's for the boxes, and about two leaves for each box met
 #pragma once

@@ -212,7 +212,7 @@ TEST(csg_cells, a_thin_plate_keeps_its_thickness) {
 TEST(csg_cells, deep_chains_need_no_stack) {
   for (const CsgOperation operation : {CsgOperation::unite, CsgOperation::subtract}) {
     CsgTree tree;
-    constexpr std::uint32_t kDepth = 100'000;
+    constexpr std::uint32_t kDepth = 20'000;
     // Node 2i is an operation on leaf node 2i + 1 and what follows; subtraction alternates.
     for (std::uint32_t i = 0; i < kDepth; ++i) {
       tree.nodes.push_back({CsgNode::kInner, operation, {2 * i + 1, 2 * i + 2}});
