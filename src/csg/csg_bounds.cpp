@@ -12,7 +12,7 @@ Box3d csg_bounds(const CsgTree& tree) {
   std::vector<Box3d> boxes;
   std::vector<bool> exists;
   for (const CsgLeaf& leaf : tree.leaves) {
-    boxes.push_back(bounds_of(leaf));
+    boxes.push_back(extent_of(leaf));
     exists.push_back(!boxes.back().is_empty());
   }
   const CsgExpression expression(tree, exists);

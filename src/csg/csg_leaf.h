@@ -87,7 +87,9 @@ struct PlacedLeaf {
 // Nothing if the leaf has no points: sizes that are not positive, no numbers, or a placement that flattens.
 std::optional<PlacedLeaf> place_leaf(const CsgLeaf& leaf, SurfaceTable& surfaces);
 
-// The box of a leaf where it is placed, a little wide; infinite for half-spaces; empty for none.
+// The box of a leaf where it is placed, as described; infinite for half-spaces; empty for none.
+Box3d extent_of(const CsgLeaf& leaf);
+// A little wider: faces move onto equal ones.
 Box3d bounds_of(const CsgLeaf& leaf);
 
 // Where the leaf lies relative to a cell: in and out are certain. `surfaces` is the table it was placed with.

@@ -263,7 +263,7 @@ CsgShape Placer::operator()(const CsgRounded& r) {
 
 }  // namespace
 
-Box3d bounds_of(const CsgLeaf& leaf) {
+Box3d extent_of(const CsgLeaf& leaf) {
   const Affine3d& m = leaf.object_from_primitive;
   const Box3d none{Vec3d(kInfinity), Vec3d(-kInfinity)};
   if (!is_usable(m)) return none;
@@ -274,8 +274,12 @@ Box3d bounds_of(const CsgLeaf& leaf) {
     box.high[axis] = m.translation[axis] + std::visit(Support{row}, leaf.primitive);
     box.low[axis] = m.translation[axis] - std::visit(Support{-row}, leaf.primitive);
   }
-  if (box.is_empty() || !(box.low.x < kInfinity && box.high.x > -kInfinity)) return none;
-  // Rounding, and faces that move onto equal ones.
+  return box.is_empty() || !(box.low.x < kInfinity && box.high.x > -kInfinity) ? none : box;
+}
+
+Box3d bounds_of(const CsgLeaf& leaf) {
+  Box3d box = extent_of(leaf);
+  if (box.is_empty()) return box;
   const double reach = std::max({max_component(box.high), max_component(-box.low), 0.0});
   if (std::isfinite(reach)) {
     const Vec3d slack(1.5 * kMergedDeviation * reach);

@@ -229,8 +229,8 @@ TEST(csg_scene, is_framed_staged_and_inspected) {
   EXPECT_EQ(report.objects[0].csg->primitives, 3U);
   EXPECT_EQ(report.objects[0].csg->operations, 1U);
   EXPECT_EQ(report.objects[0].csg->depth, 1U);
-  EXPECT_NEAR(report.bounds_min.x, 9, 1e-4);
-  EXPECT_NEAR(report.bounds_max.z, 1, 1e-4);
+  EXPECT_NEAR(report.bounds_min.x, 9, 1e-12);
+  EXPECT_NEAR(report.bounds_max.z, 1, 1e-12);
   EXPECT_NEAR(frame_scene(scene).target.x, 10, 1);
   StageOptions options;
   options.lighting = Lighting::studio;
@@ -269,7 +269,7 @@ TEST(csg_scene, rounding_settings_leave_a_note) {
 }
 
 TEST(csg_scene, empty_and_endless_solids) {
-  const auto prepared = prepare_scene(csg_scene(CsgTree{}));
+  const auto prepared = prepare_scene(csg_scene(flat_tree(CsgOperation::unite, {})));
   EXPECT_FALSE(prepared->intersect(make_trace_ray({0, 0, 5}, {0, 0, -1})));
   EXPECT_THROW(prepare_scene(csg_scene(one_leaf(CsgHalfSpace{}))), Error);
 }
