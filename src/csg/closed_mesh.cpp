@@ -1,9 +1,12 @@
 #include "csg/closed_mesh.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <limits>
 #include <numeric>
+
+#include "base/hash.h"
 
 namespace arris {
 namespace {
@@ -15,15 +18,16 @@ Vec3d center_of(const Box3d& box) {
   return box.low * 0.5 + box.high * 0.5;
 }
 
-bool line_meets(const Box3d& box, Vec3d origin, Vec3d direction, double slack) {
+// `inverse` is 1 / direction; infinite where the line has no slope.
+bool line_meets(const Box3d& box, Vec3d origin, Vec3d inverse) {
   double t0 = -kInfinity, t1 = kInfinity;
   for (int k = 0; k < 3; ++k) {
-    const double low = box.low[k] - slack - origin[k], high = box.high[k] + slack - origin[k];
-    if (direction[k] == 0) {
+    const double low = box.low[k] - origin[k], high = box.high[k] - origin[k];
+    if (std::isinf(inverse[k])) {
       if (low > 0 || high < 0) return false;
       continue;
     }
-    const double a = low / direction[k], b = high / direction[k];
+    const double a = low * inverse[k], b = high * inverse[k];
     t0 = std::max(t0, std::min(a, b));
     t1 = std::min(t1, std::max(a, b));
   }
@@ -81,6 +85,27 @@ ClosedMesh::ClosedMesh(std::vector<Vec3d> vertices, const std::vector<Triangle>&
   std::iota(order_.begin(), order_.end(), 0U);
   nodes_.reserve(triangles_.size());
   build(0, std::uint32_t(triangles_.size()), boxes);
+  make_digest();
+}
+
+// Of numbers, not of bytes: -0 is 0.
+void ClosedMesh::make_digest() {
+  std::uint32_t low = 1, high = 2;
+  const auto add = [&](std::uint32_t value) {
+    low = hash_combine(low, value);
+    high = hash_combine(high, value);
+  };
+  for (const Vec3d& p : vertices_) {
+    for (int axis = 0; axis < 3; ++axis) {
+      const auto bits = std::bit_cast<std::uint64_t>(p[axis] + 0.0);
+      add(std::uint32_t(bits));
+      add(std::uint32_t(bits >> 32U));
+    }
+  }
+  for (const Triangle& t : triangles_) {
+    for (const std::uint32_t vertex : t) add(vertex);
+  }
+  digest_ = (std::uint64_t{high} << 32U) | low;
 }
 
 // Halves by the middle of the centers' longest side: depth is that of a balanced tree.
@@ -93,7 +118,7 @@ void ClosedMesh::build(std::uint32_t first, std::uint32_t count, std::vector<Box
     const Vec3d c = center_of(boxes[order_[i]]);
     centers = hull(centers, {c, c});
   }
-  nodes_.push_back({box, first, count, 0});
+  nodes_.push_back({{box.low - Vec3d(slack_), box.high + Vec3d(slack_)}, first, count, 0});
   if (count <= kLeafTriangles) return;
   const Vec3d extent = centers.high - centers.low;
   const int axis =
@@ -122,13 +147,14 @@ void ClosedMesh::collect_crossings(const Ray& ray, std::vector<Crossing>& out) c
       dot(center_of(nodes_[0].box) - ray.origin, ray.direction) / dot(ray.direction, ray.direction);
   const Vec3d origin = ray.origin + ray.direction * skipped;
   const Shear shear(origin, ray.direction);
+  const Vec3d inverse = Vec3d(1) / ray.direction;
   std::uint32_t stack[64];
   int top = 0;
   stack[top++] = 0;
   while (top > 0) {
     const std::uint32_t at = stack[--top];
     const Node& node = nodes_[at];
-    if (!line_meets(node.box, origin, ray.direction, slack_)) continue;
+    if (!line_meets(node.box, origin, inverse)) continue;
     if (node.count == 0) {
       stack[top++] = node.second_child;
       stack[top++] = at + 1;

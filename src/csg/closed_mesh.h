@@ -31,6 +31,8 @@ class ClosedMesh {
   [[nodiscard]] bool contains(Vec3d p) const;
   [[nodiscard]] Cover cover(const SpaceCell& cell) const;
 
+  // Of vertices and triangles: meshes of one digest are crossed alike.
+  [[nodiscard]] std::uint64_t digest() const { return digest_; }
   [[nodiscard]] const std::vector<Triangle>& triangles() const { return triangles_; }
   [[nodiscard]] const std::vector<Vec3d>& vertices() const { return vertices_; }
   // Not unit; 0 where the triangle has no area.
@@ -42,13 +44,15 @@ class ClosedMesh {
     std::uint32_t first = 0, count = 0;  // of order_, if a leaf
     std::uint32_t second_child = 0;      // the first follows its parent
   };
+  void make_digest();
   void build(std::uint32_t first, std::uint32_t count, std::vector<Box3d>& boxes);
 
   std::vector<Vec3d> vertices_;
   std::vector<Triangle> triangles_;
   std::vector<std::uint32_t> order_;
   std::vector<Node> nodes_;
-  double slack_ = 0;  // boxes are wider by this: rounding of the crossing test
+  std::uint64_t digest_ = 0;
+  double slack_ = 0;  // the nodes' boxes are wider by this: rounding of the crossing test
 };
 
 }  // namespace arris

@@ -291,8 +291,7 @@ void LeafCrossings::Finder::operator()(const RevolutionLeaf& revolution) const {
 
 void LeafCrossings::Finder::operator()(const MeshLeaf& leaf_mesh) const {
   std::vector<ClosedMesh::Crossing>& all = buffers.mesh_;
-  all.clear();
-  leaf_mesh.mesh.collect_crossings(ray, all);
+  all = buffers.cross_mesh(leaf_mesh.mesh, ray);
   for (ClosedMesh::Crossing& c : all) {
     const double t = plane_t(surfaces.planes()[leaf_mesh.planes[c.triangle].plane], ray);
     // Equal planes at one t; slivers whose plane means little keep their own.
@@ -358,6 +357,19 @@ void LeafCrossings::Finder::operator()(const RoundedLeaf& rounded) const {
     }
   }
   emit({first, last});
+}
+
+const std::vector<ClosedMesh::Crossing>& LeafCrossings::cross_mesh(const ClosedMesh& mesh,
+                                                                   const Ray& ray) {
+  MeshMemo& memo = memos_[mesh.digest() % memos_.size()];
+  if (memo.mesh != mesh.digest() || memo.ray.origin != ray.origin ||
+      memo.ray.direction != ray.direction) {
+    memo.crossings.clear();
+    mesh.collect_crossings(ray, memo.crossings);
+    memo.mesh = mesh.digest();
+    memo.ray = ray;
+  }
+  return memo.crossings;
 }
 
 const std::vector<Crossing>& LeafCrossings::find(const PlacedLeaf& leaf,

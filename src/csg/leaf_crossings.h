@@ -8,6 +8,7 @@
 // Source     intervals: Roth 1982; quadrics from the point nearest to their center, so that nothing cancels
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -30,8 +31,17 @@ class LeafCrossings {
 
  private:
   struct Finder;
+  // A ray meets the cells of a solid one after the other, and each asks for the whole line's crossings.
+  struct MeshMemo {
+    std::uint64_t mesh = 0;  // its digest
+    Ray ray;
+    std::vector<ClosedMesh::Crossing> crossings;
+  };
+  const std::vector<ClosedMesh::Crossing>& cross_mesh(const ClosedMesh& mesh, const Ray& ray);
+
   std::vector<Crossing> candidates_, found_;
   std::vector<ClosedMesh::Crossing> mesh_;
+  std::array<MeshMemo, 256> memos_;  // by the digest's last bits
 };
 
 }  // namespace arris
