@@ -84,10 +84,14 @@ std::string format_bounds(Vec3d lower, Vec3d upper) {
       size.y, size.z, lower.x, lower.y, lower.z, upper.x, upper.y, upper.z);
 }
 
+std::string count(std::uint64_t number, const char* what) {
+  return fmt::format("{} {}{}", number, what, number == 1 ? "" : "s");
+}
+
 void print_csg(const ObjectReport& object) {
-  fmt::print("  solid       {} {} in {} {}, {} deep; exact surfaces\n", object.csg->primitives,
-             object.csg->primitives == 1 ? "primitive" : "primitives", object.csg->operations,
-             object.csg->operations == 1 ? "operation" : "operations", object.csg->depth);
+  fmt::print("  solid       {} in {}, {} deep; exact surfaces\n",
+             count(object.csg->primitives, "primitive"),
+             count(object.csg->operations, "operation"), object.csg->depth);
 }
 
 void print_mesh(const ObjectReport& object) {
@@ -122,11 +126,20 @@ void print_object(const ObjectReport& object, const RoundingSummary* rounding) {
   for (const RoundingNote& note : rounding->notes) fmt::print("              {}\n", note.text());
 }
 
+// "12 triangles and 3 primitives": what there is of them.
+std::string count_parts(const SceneReport& scene) {
+  std::uint64_t primitives = 0;
+  for (const ObjectReport& object : scene.objects) {
+    primitives += object.csg ? object.csg->primitives : 0;
+  }
+  if (primitives == 0) return count(scene.triangles, "triangle");
+  const std::string solids = count(primitives, "primitive");
+  return scene.triangles == 0 ? solids : count(scene.triangles, "triangle") + " and " + solids;
+}
+
 void print_report(const Findings& findings, const std::string& input) {
   const SceneReport& scene = findings.scene;
-  fmt::print("{}: {} {} in {} {}\n", input, scene.triangles,
-             scene.triangles == 1 ? "triangle" : "triangles", scene.objects.size(),
-             scene.objects.size() == 1 ? "object" : "objects");
+  fmt::print("{}: {} in {}\n", input, count_parts(scene), count(scene.objects.size(), "object"));
   fmt::print("size {}\n", format_bounds(scene.bounds_min, scene.bounds_max));
   for (std::size_t i = 0; i < scene.objects.size(); ++i) {
     print_object(scene.objects[i], find_summary(findings, i));

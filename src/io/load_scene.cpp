@@ -77,10 +77,21 @@ std::string_view first_line(std::string_view text) {
     const std::size_t end = std::min(text.find_first_of("\r\n"), text.size());
     std::string_view line = text.substr(0, end);
     line.remove_prefix(std::min(line.find_first_not_of(" \t"), line.size()));
-    if (!line.empty() && line[0] != '#') return line;
+    if (!line.empty() && line[0] != '#' && !line.starts_with("//")) return line;
     text.remove_prefix(std::min(end + 1, text.size()));
   }
   return {};
+}
+
+// As "group() {" of an OpenSCAD tree.
+bool starts_with_call(std::string_view line) {
+  if (line.starts_with('%')) line.remove_prefix(1);
+  const std::size_t end = std::min(
+      line.find_first_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_"),
+      line.size());
+  line.remove_prefix(end);
+  line.remove_prefix(std::min(line.find_first_not_of(' '), line.size()));
+  return end > 0 && line.starts_with('(');
 }
 
 std::string_view find_text_extension(std::string_view text) {
@@ -91,6 +102,7 @@ std::string_view find_text_extension(std::string_view text) {
   for (const std::string_view keyword : {"v", "vt", "vn", "f", "o", "g", "s", "usemtl", "mtllib"}) {
     if (word == keyword) return ".obj";  // none is a key of scene files
   }
+  if (starts_with_call(line)) return ".csg";
   return line.find('=') == std::string_view::npos ? "" : ".toml";
 }
 

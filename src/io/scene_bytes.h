@@ -1,6 +1,6 @@
 // scene_bytes.h — scenes that come through a pipe: no name says their format, so their content does
-// Limits     OBJ and TOML are told apart by their first line that is neither empty nor a comment. Files that the
-//            scene names are looked for in the current folder.
+// Limits     OBJ, TOML and OpenSCAD's .csg are told apart by their first line that is neither empty nor a comment.
+//            Files that the scene names are looked for in the current folder.
 // Errors     kind input
 #pragma once
 
