@@ -75,11 +75,11 @@ TEST(CsgHull, hull_of_discs_agrees_with_support_lines) {
     }
     const std::optional<FlatShape> hull = hull_of_discs(discs);
     ASSERT_TRUE(hull);
-    for (int k = 0; k < 100; ++k) {
+    for (int k = 0; k < 40; ++k) {
       const Vec3d r = next() * 1.6;
       double beyond = -1e300;  // the most that p is past a support line
-      for (int i = 0; i < 5000; ++i) {
-        const Vec2d u{std::cos(2 * kPi * i / 5000), std::sin(2 * kPi * i / 5000)};
+      for (int i = 0; i < 2000; ++i) {
+        const Vec2d u{std::cos(2 * kPi * i / 2000), std::sin(2 * kPi * i / 2000)};
         double reach = -1e300;
         for (const Disc2d& d : discs)
           reach = std::max(reach, u.x * d.center.x + u.y * d.center.y + d.radius);
