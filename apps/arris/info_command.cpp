@@ -90,8 +90,8 @@ std::string count(std::uint64_t number, const char* what) {
 
 void print_csg(const ObjectReport& object) {
   fmt::print("  solid       {} in {}, {} deep; exact surfaces\n",
-             count(object.csg->primitives, "primitive"),
-             count(object.csg->operations, "operation"), object.csg->depth);
+             count(object.csg->primitives, "primitive"), count(object.csg->operations, "operation"),
+             object.csg->depth);
 }
 
 void print_mesh(const ObjectReport& object) {

@@ -88,10 +88,10 @@ RenderJob make_job(const RenderRequest& request, const Scene& scene) {
 void report_scene(Console& console, const Scene& scene, const PrepareStats& stats) {
   for (const std::string& note : scene.notes) console.report(note);
   report_rounding(console, scene, stats);
-  const std::string triangles =
-      stats.triangles == 0 ? ""  // CSG solids only
-                           : fmt::format("{} {} in ", stats.triangles,
-                                         stats.triangles == 1 ? "triangle" : "triangles");
+  const std::string triangles = stats.triangles == 0
+                                    ? ""  // CSG solids only
+                                    : fmt::format("{} {} in ", stats.triangles,
+                                                  stats.triangles == 1 ? "triangle" : "triangles");
   console.detail(fmt::format("{}{} {}, prepared in {}", triangles, stats.objects,
                              stats.objects == 1 ? "object" : "objects",
                              format_duration(stats.build_seconds + stats.round_seconds)));

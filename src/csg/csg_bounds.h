@@ -8,8 +8,8 @@
 
 namespace arris {
 
-// Holds the solid as described, in the tree's own space; differences count as their first child. Empty (infinities the wrong way
-// round) for the empty set, infinite for endless solids.
+// Holds the solid as described, in the tree's own space; differences count as their first child. Empty (infinities the
+// wrong way round) for the empty set, infinite for endless solids.
 Box3d csg_bounds(const CsgTree& tree);
 
 struct CsgCounts {
