@@ -261,7 +261,7 @@ void LeafCrossings::Finder::operator()(const RevolutionLeaf& revolution) const {
                 transform_vector(revolution.primitive_from_object, ray.direction)};
   const std::vector<RegionEdge>& edges = revolution.region.edges();
   for (std::size_t i = 0; i < edges.size(); ++i) {
-    const auto& [a, b] = edges[i];
+    const Vec2d a = edges[i].a, b = edges[i].b;
     const auto add = [&](double t) {
       if (!std::isfinite(t)) return;
       const Vec3d q = own.origin + own.direction * t;

@@ -363,7 +363,7 @@ SolidShape CsgEvaluator::minkowski(const ScadNode& node, const CsgPlace& place) 
   std::erase_if(operands, [](const SolidShape& shape) { return shape.is_empty(); });
   if (operands.empty()) return {};
   const LeafMaker outer = maker(node, place);
-  if (!is_invertible(outer.place.linear)) return {};
+  if (!keeps_volume(outer.place.linear)) return {};
   SolidShape total = std::move(operands[0]);
   for (std::size_t i = 1; i < operands.size(); ++i) {
     std::vector<const CsgLeaf*> left, right;

@@ -322,7 +322,7 @@ SolidShape CsgEvaluator::resize(const ScadNode& node, const CsgPlace& place) {
   CsgPlace inner = place;
   inner.solid = {};
   SolidShape shape = combine(CsgOperation::unite, solids(node, inner));
-  if (shape.is_empty() || !is_invertible(maker(node, place).place.linear)) return {};
+  if (shape.is_empty() || !keeps_volume(maker(node, place).place.linear)) return {};
   if (!has_exact_bounds(shape)) throw ScadUnsupported{"the size of its content isn't known"};
   const Bounds3d bounds = bounds_of(shape);
   const ScadArguments reader = arguments(node);

@@ -104,7 +104,7 @@ int CsgEvaluator::facet_count(const FacetSettings& facets, double radius) {
 }
 
 LeafMaker CsgEvaluator::maker(const ScadNode& node, const CsgPlace& place) {
-  if (!is_invertible(place.solid.linear) || !is_finite(place.solid.translation)) {
+  if (!keeps_volume(place.solid.linear) || !is_finite(place.solid.translation)) {
     note(node, "is left out: its matrix flattens it or holds what isn't a number");
   }
   return {place.solid, material_of(place.color), place.color.has_value()};

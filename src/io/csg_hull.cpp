@@ -199,7 +199,7 @@ SolidShape sleeve(const Ball& a, const Ball& b, const LeafMaker& make_leaf) {
   return make_leaf(cone, {frame_about(along), a.center});
 }
 
-std::vector<Ball> without_repeats(std::vector<Ball> balls, double size) {
+std::vector<Ball> without_repeats(const std::vector<Ball>& balls, double size) {
   std::vector<Ball> kept;
   for (const Ball& b : balls) {
     const bool known = std::any_of(kept.begin(), kept.end(), [&](const Ball& k) {
@@ -292,7 +292,7 @@ std::optional<SolidShape> hull_of_balls(std::vector<Ball> balls, const LeafMaker
     return hull ? make_leaf(*std::move(hull)) : SolidShape{};
   }
   if (balls.size() > 10'000) return std::nullopt;
-  balls = without_repeats(std::move(balls), size);
+  balls = without_repeats(balls, size);
   if (balls.size() == 1) return ball(balls[0], make_leaf);
   if (most - least <= kSixDigits * most) {
     for (Ball& b : balls) b.radius = most;

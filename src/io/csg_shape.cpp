@@ -115,7 +115,7 @@ std::uint32_t add_node(CsgTree& tree, SolidShape& shape) {
 
 }  // namespace
 
-bool is_invertible(const Mat3d& m) {
+bool keeps_volume(const Mat3d& m) {
   const double scale = std::max({length(m.x), length(m.y), length(m.z)});
   return std::isfinite(scale) && std::abs(determinant(m)) > 1e-12 * scale * scale * scale;
 }
@@ -123,7 +123,7 @@ bool is_invertible(const Mat3d& m) {
 SolidShape LeafMaker::operator()(CsgPrimitive primitive, const Affine3d& local) const {
   SolidShape shape;
   const Affine3d m = place * local;
-  if (!is_invertible(m.linear) || !is_finite(m.translation)) return shape;
+  if (!keeps_volume(m.linear) || !is_finite(m.translation)) return shape;
   shape.leaf = CsgLeaf{std::move(primitive), m, material};
   shape.has_color = has_color;
   return shape;
@@ -230,7 +230,7 @@ Bounds3d bounds_of(const SolidShape& shape) {
 }
 
 void transform(SolidShape& shape, const Affine3d& m) {
-  if (!is_invertible(m.linear) || !is_finite(m.translation)) shape = {};
+  if (!keeps_volume(m.linear) || !is_finite(m.translation)) shape = {};
   visit_leaves(shape, [&](SolidShape& s) {
     s.leaf->object_from_primitive = m * s.leaf->object_from_primitive;
   });

@@ -64,8 +64,8 @@ struct LeafMaker {
   [[nodiscard]] SolidShape operator()(CsgPrimitive primitive, const Affine3d& local = {}) const;
 };
 
-// False too for what isn't a number.
-bool is_invertible(const Mat3d& m);
+// False for what flattens and for what is not a number.
+bool keeps_volume(const Mat3d& m);
 
 template <class Shape>
 Shape combine(CsgOperation operation, std::vector<Shape> shapes) {
