@@ -74,9 +74,11 @@ void apply_method(RoundingSettings& settings, const Given& given) {
     return;
   }
   constexpr RoundMethod kMethods[] = {RoundMethod::exact, RoundMethod::shader, RoundMethod::none};
-  const std::vector<std::string> names{"exact", "shader", "none"};
+  const std::vector<std::string> names{"exact", "shader", "none", "mesh:N"};
   if (given.text == "mesh") fail(given, "incomplete; say how many subdivisions, such as mesh:3");
-  settings.method = kMethods[parse_choice(given, names)];
+  const std::size_t choice = parse_choice(given, names);
+  if (choice == std::size(kMethods)) fail(given, "incomplete; put a number for N, such as mesh:3");
+  settings.method = kMethods[choice];
 }
 
 }  // namespace

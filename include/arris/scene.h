@@ -108,7 +108,7 @@ struct Object {
   std::optional<RoundingSettings> rounding;  // empty: the scene's default
 };
 
-inline constexpr double kMinFovDeg = 0.1, kMaxFovDeg = 178;
+inline constexpr double kMinFovDeg = 0.01, kMaxFovDeg = 178;
 inline constexpr double kMostStops = 64;  // of exposure, up and down
 
 struct Camera {

@@ -173,13 +173,8 @@ RadiusLimits limits_of(const Mesh& mesh, const Object& object, double min_angle)
 double percent_radius(const Mesh& mesh, const Object& object, const RoundingSettings& settings,
                       double percent) {
   const RadiusLimits limits = limits_of(mesh, object, settings.min_angle);
-  if (!limits.smallest_inradius) {
-    throw Error(
-        Error::Kind::input, place_of(object),
-        "has no closed convex solid, so a radius in percent of the inradius has no meaning; give "
-        "the radius in scene units");
-  }
-  return *limits.smallest_inradius * percent / 100;
+  if (limits.smallest_inradius) return *limits.smallest_inradius * percent / 100;
+  return limits.typical_half_width.value_or(0) * percent / 100;  // 0: no edge to round
 }
 
 double auto_radius(const Scene& scene, const Mesh& mesh, const Object& object,

@@ -128,6 +128,10 @@ void apply_camera(Scene& scene, const CameraOptions& options) {
   camera.target = options.target.value_or(camera.target);
   camera.up = options.up.value_or(camera.up);
   camera.fov_deg = options.fov_deg.value_or(camera.fov_deg);
+  // A view from straight above has north on top, one from below as well.
+  const Vec3d view = camera.target - camera.position;
+  const bool along_up = length(cross(view, camera.up)) <= 1e-6 * length(view) * length(camera.up);
+  if (!options.up && along_up) camera.up = make_ground_frame(camera.up).north;
 }
 
 }  // namespace

@@ -16,7 +16,9 @@ float mean(Rgb c) {
   return (c.x + c.y + c.z) * (1.0F / 3.0F);
 }
 
-// Collects emitters with the power that decides how often each is drawn.
+// Collects emitters with the power that decides how often each is drawn. That of far lights (directional, environment,
+// sun) grows with the scene's disc, most of which nobody may see: a wide floor would leave nothing to the lamps. So far
+// and near ones are drawn equally often where there are both.
 class LightSetBuilder {
  public:
   explicit LightSetBuilder(const SceneBounds& bounds)
@@ -72,6 +74,7 @@ class LightSetBuilder {
   }
 
   LightSet finish() {
+    balance_far_and_near();
     set_.selection = make_alias_table(powers_);
     set_.rectangle_probability.resize(set_.rectangles.size());
     set_.triangle_probability.resize(set_.triangles.size());
@@ -101,6 +104,22 @@ class LightSetBuilder {
   }
 
  private:
+  static bool is_far(const Emitter& e) {
+    return e.kind == EmitterKind::directional || e.kind == EmitterKind::environment ||
+           e.kind == EmitterKind::sun;
+  }
+
+  void balance_far_and_near() {
+    double far = 0, near = 0;
+    for (std::size_t i = 0; i < powers_.size(); ++i) {
+      (is_far(set_.emitters[i]) ? far : near) += double(powers_[i]);
+    }
+    if (far == 0 || near == 0) return;
+    for (std::size_t i = 0; i < powers_.size(); ++i) {
+      powers_[i] = float(double(powers_[i]) / (is_far(set_.emitters[i]) ? far : near));
+    }
+  }
+
   // Emitters without power are kept in their arrays and never drawn.
   void add(EmitterKind kind, std::size_t index, float power) {
     if (power > 0.0F) {

@@ -1,6 +1,7 @@
 // lights.h — everything that emits, ready for next-event estimation
 // What       make_light_set() flattens the scene's lights, its environment and the emissive triangles
-//            into arrays and a table that selects one emitter in proportion to its power.
+//            into arrays and a table that selects one emitter in proportion to its power; where there are far
+//            ones (directional, environment, sun) and near ones, either half as often.
 //            sample_light() draws a direction towards an emitter; pdf_…() say with which density it
 //            would have drawn a direction that the BSDF found, for multiple importance sampling.
 // In / Out   world frame; wi unit, away from the point; radiance in W/(m² sr); pdfs per solid angle at

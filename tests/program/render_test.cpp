@@ -119,6 +119,30 @@ TEST(Render, options_change_what_they_name) {
   EXPECT_TRUE(render("--round none --round-edges both") == render("--round none"));
 }
 
+// An L of 2 x 2 x 1 and a floor, which has no edge to round.
+TEST(Render, a_percentage_works_for_any_object) {
+  const Workplace place;
+  test::write_text(
+      place / "l.off",
+      "OFF\n12 8 0\n0 0 0\n2 0 0\n2 1 0\n1 1 0\n1 2 0\n0 2 0\n0 0 1\n2 0 1\n2 1 1\n1 1 1\n"
+      "1 2 1\n0 2 1\n6 5 4 3 2 1 0\n6 6 7 8 9 10 11\n4 0 1 7 6\n4 1 2 8 7\n4 2 3 9 8\n"
+      "4 3 4 10 9\n4 4 5 11 10\n4 5 0 6 11\n");
+  test::write_text(
+      place / "l.toml",
+      "round = \"20%\"\n[[object]]\nfile = \"l.off\"\n[[object]]\nshape = \"plane\"\nsize = 9\n"
+      "[[object]]\nshape = \"box\"\ntranslate = [4, 0, 0]\n");
+  const Outcome run = place.arris(std::string("render l.toml --stats - -o a.png") + kSmall);
+  ASSERT_EQ(run.code, 0) << run.err;
+  EXPECT_THAT(run.out, HasSubstr("\"rounded_edges\": 29"));  // 17 of the L, 12 of the box
+}
+
+TEST(Render, a_view_from_straight_above_needs_no_up) {
+  const Outcome run =
+      Workplace().arris(std::string("render cube.stl") + kSmall +
+                        "-o x.pfm --camera-position 0.2,0.1,9 --camera-target 0.2,0.1,0");
+  EXPECT_EQ(run.code, 0) << run.err;
+}
+
 TEST(Render, a_radius_that_does_not_fit_is_an_error_that_names_object_and_limit) {
   const Outcome run = Workplace().arris("render cube.stl -o a.png --size 8x8 --spp 1 --round 1.5");
   EXPECT_EQ(run.code, 2);

@@ -105,7 +105,7 @@ INSTANTIATE_TEST_SUITE_P(
         Misuse{"render cube.stl -o a.png --time nan",
                "--time: \"nan\" is out of range; use 0.01 to 1e+08\n"},
         Misuse{"render cube.stl -o a.png --fov 180",
-               "--fov: \"180\" is out of range; use 0.1 to 178\n"},
+               "--fov: \"180\" is out of range; use 0.01 to 178\n"},
         Misuse{"render cube.stl -o a.png --camera-position 1,2",
                "--camera-position: \"1,2\" is no point"},
         Misuse{"render cube.stl -o a.png --camera-up 0,0,0", "--camera-up: 0,0,0 is no direction"},

@@ -238,6 +238,20 @@ TEST(Lights, rectangle_irradiance_matches_the_form_factor) {
   }
 }
 
+// By power alone a directional light over a wide floor would leave a lamp without samples.
+TEST(Lights, far_and_near_lights_are_drawn_equally_often_in_a_scene_of_any_size) {
+  const std::vector<Light> lights = {PointLight{{0, 0, 1}, {1, 1, 1}},
+                                     PointLight{{0, 0, 2}, {3, 3, 3}},
+                                     DirectionalLight{{0, 0, -1}, {1, 1, 1}}};
+  for (const float radius : {0.01F, 1.0F, 1e4F}) {
+    const LightSet set = make_light_set(lights, ConstantEnvironment{}, {}, {{0, 0, 0}, radius});
+    ASSERT_EQ(set.emitters.size(), 3U);
+    EXPECT_NEAR(set.selection.probability[0], 0.125F, 1e-6F) << radius;
+    EXPECT_NEAR(set.selection.probability[1], 0.375F, 1e-6F) << radius;
+    EXPECT_NEAR(set.selection.probability[2], 0.5F, 1e-6F) << radius;
+  }
+}
+
 TEST(Lights, two_triangles_are_a_rectangle) {
   const Vec3f a{-1, -1, 2};
   const Vec3f b{-1, 2, 2};
