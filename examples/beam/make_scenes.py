@@ -67,7 +67,8 @@ class Camera:
 def box(low, high):
     size = [b - a for a, b in zip(low, high)]
     place = "".join(f"[{', '.join('1' if i == k else '0' for k in range(3))}, {low[i]:.9g}], " for i in range(3))
-    return f"multmatrix([{place}[0, 0, 0, 1]]) {{ cube(size = [{', '.join(f'{s:.9g}' for s in size)}], center = false); }}"
+    sides = ", ".join(f"{s:.9g}" for s in size)
+    return f"multmatrix([{place}[0, 0, 0, 1]]) {{ cube(size = [{sides}], center = false); }}"
 
 
 def cylinder(a, b, radius):

@@ -53,17 +53,18 @@ std::optional<std::string> find_unsupported_leaf(const CsgSolid& solid) {
 // One tile under way.
 class BeamTracer::Tracer {
  public:
-  Tracer(const BeamTracer& shared, const std::function<void(const BeamPixel&)>& sink)
-      : shared_(shared), sink_(sink) {}
+  Tracer(const BeamTracer& shared, const Rect& tile,
+         const std::function<void(const BeamPixel&)>& sink)
+      : shared_(shared), sink_(sink), lists_(tile) {}
 
   // Of at least a pixel.
   void visit(const Rect& rect, const std::vector<BeamPart>& above, double depth_end) {
     if (rect.x0 >= shared_.width_px_ || rect.y0 >= shared_.height_px_) return;
     const std::vector<BeamPart> parts = prune_parts(shared_.view_, above, rect, depth_end);
     ++stats_.regions;
-    const LookTree tree = look(shared_.view_, parts, rect, depth_end);
+    LookTree tree = look(shared_.view_, parts, rect, depth_end);
     const double next_end = std::min(depth_end, tree.depth_end);
-    if (tree.complete) {
+    if (tree.complete && add_shadows(tree, rect)) {
       for (double y = rect.y0; y < rect.y1; ++y) {
         for (double x = rect.x0; x < rect.x1; ++x) add_pixel(tree, {x, y, x + 1, y + 1});
       }
@@ -83,15 +84,20 @@ class BeamTracer::Tracer {
   void visit_part(const Rect& rect, const std::vector<BeamPart>& above, double depth_end) {
     const std::vector<BeamPart> parts = prune_parts(shared_.view_, above, rect, depth_end);
     ++stats_.regions;
-    const LookTree tree = look(shared_.view_, parts, rect, depth_end);
+    LookTree tree = look(shared_.view_, parts, rect, depth_end);
     const bool smallest = rect.width() <= shared_.options_.least_region;
-    if (tree.complete || smallest) {
+    const bool complete = (tree.complete || smallest) && add_shadows(tree, rect);
+    if (complete || smallest) {
       add_ends(tree, areas_of(tree, rect), parts);
       return;
     }
     for (const Rect& part : quarters_of(rect)) {
       visit_part(part, parts, std::min(depth_end, tree.depth_end));
     }
+  }
+
+  bool add_shadows(LookTree& tree, const Rect& rect) {
+    return shared_.shadows_.add_shadows(tree, rect, lists_, stats_.regions);
   }
 
   void add_pixel(const LookTree& tree, const Rect& pixel) {
@@ -240,18 +246,21 @@ class BeamTracer::Tracer {
 
   const BeamTracer& shared_;
   const std::function<void(const BeamPixel&)>& sink_;
+  ShadowLists lists_;
   std::vector<PixelSurface> surfaces_;
   BeamStats stats_;
 };
 
 BeamTracer::BeamTracer(std::span<const BeamSolid> solids, const EyeRays& eye, int width_px,
-                       int height_px, const BeamOptions& options)
+                       int height_px, const BeamOptions& options,
+                       std::span<const LightPlace> lights)
     : solids_(solids),
       eye_(eye),
       width_px_(width_px),
       height_px_(height_px),
       options_(options),
-      view_(solids, eye) {}
+      view_(solids, eye),
+      shadows_(solids, eye, lights) {}
 
 std::vector<BeamTile> BeamTracer::make_tiles() const {
   BeamTile whole;
@@ -284,7 +293,7 @@ std::vector<BeamTile> BeamTracer::make_tiles() const {
 
 BeamStats BeamTracer::trace_tile(const BeamTile& tile,
                                  const std::function<void(const BeamPixel&)>& sink) const {
-  Tracer tracer(*this, sink);
+  Tracer tracer(*this, tile.rect, sink);
   tracer.visit(tile.rect, tile.parts, kInfinity);
   return tracer.stats();
 }

@@ -18,6 +18,7 @@
 #include <string>
 #include <vector>
 
+#include "beam/beam_shadow.h"
 #include "beam/beam_view.h"
 #include "beam/region_look.h"
 #include "beam/tree_area.h"
@@ -67,8 +68,9 @@ std::optional<std::string> find_unsupported_leaf(const CsgSolid& solid);
 class BeamTracer {
  public:
   // `solids` must outlive the tracer. Precondition: only supported leaves.
+  // The lights whose shadows are looked for.
   BeamTracer(std::span<const BeamSolid> solids, const EyeRays& eye, int width_px, int height_px,
-             const BeamOptions& options = {});
+             const BeamOptions& options = {}, std::span<const LightPlace> lights = {});
 
   // Together they are the picture.
   [[nodiscard]] std::vector<BeamTile> make_tiles() const;
@@ -87,6 +89,7 @@ class BeamTracer {
   int width_px_, height_px_;
   BeamOptions options_;
   BeamView view_;
+  ShadowLooker shadows_;
 };
 
 }  // namespace arris

@@ -12,6 +12,7 @@
 
 #include <cstdint>
 #include <span>
+#include <unordered_map>
 #include <vector>
 
 #include "beam/polynomial.h"
@@ -47,6 +48,10 @@ struct QuadricForm {
   Quadratic value, curvature;
   Linear half_slope;
   Quadratic discriminant;  // half_slope² - value · curvature: negative where the ray misses
+  // Of a cylinder seen from outside: the planes through the origin, or along the direction, that touch it. Rays that
+  // may meet it are on the positive side of both.
+  bool has_tangents = false;
+  Linear tangents[2];
   Linear along;  // the origin's z in the quadric's own frame: which half of a double cone it is in
 };
 
@@ -73,6 +78,16 @@ struct LightPlace {
   bool is_directional = false;
 };
 
+// Where a leaf may be in the picture, by its box: much cheaper than its surfaces. For kind light, its shadow on the
+// lit plane.
+struct LeafWindow {
+  double x0 = 0, y0 = 0, x1 = 0, y1 = 0;
+
+  [[nodiscard]] bool meets(const Rect& r) const {
+    return x0 <= r.x1 && x1 >= r.x0 && y0 <= r.y1 && y1 >= r.y0;
+  }
+};
+
 // The surfaces of some solids in one view.
 class BeamView {
  public:
@@ -86,22 +101,37 @@ class BeamView {
   [[nodiscard]] const CsgSolid& solid(std::uint32_t index) const { return *solids_[index].solid; }
   [[nodiscard]] std::size_t solid_count() const { return solids_.size(); }
   [[nodiscard]] bool direction_fixed() const { return frames_[0].direction_fixed; }
-  [[nodiscard]] PlaneForm plane(std::uint32_t solid, std::uint32_t index) const {
-    return planes_.empty()
-               ? make_form(frames_[solid], this->solid(solid).surfaces().planes()[index])
-               : planes_[solid][index];
+  // Of a leaf in the picture; rays outside miss it.
+  [[nodiscard]] LeafWindow window(std::uint32_t solid, std::uint32_t leaf) const {
+    return windows_.empty() ? make_window(solid, leaf) : windows_[solid][leaf];
   }
-  [[nodiscard]] QuadricForm quadric(std::uint32_t solid, std::uint32_t index) const {
-    return quadrics_.empty()
-               ? make_form(frames_[solid], this->solid(solid).surfaces().quadrics()[index])
-               : quadrics_[solid][index];
+  // A light's view remembers what it was asked: for one thread at a time.
+  [[nodiscard]] const PlaneForm& plane(std::uint32_t solid, std::uint32_t index) const {
+    return planes_.empty() ? remembered_plane(solid, index) : planes_[solid][index];
+  }
+  [[nodiscard]] const QuadricForm& quadric(std::uint32_t solid, std::uint32_t index) const {
+    return quadrics_.empty() ? remembered_quadric(solid, index) : quadrics_[solid][index];
   }
 
  private:
+  // Picture point · weight = a linear map of the world's points, seen from the eye or cast by the light.
+  struct Projection {
+    Mat3d linear;  // rows: x, y, weight
+    Vec3d offset;
+  };
+  [[nodiscard]] LeafWindow make_window(std::uint32_t solid, std::uint32_t leaf) const;
+  [[nodiscard]] const PlaneForm& remembered_plane(std::uint32_t solid, std::uint32_t index) const;
+  [[nodiscard]] const QuadricForm& remembered_quadric(std::uint32_t solid,
+                                                      std::uint32_t index) const;
+
   std::span<const BeamSolid> solids_;
   std::vector<ViewFrame> frames_;
+  std::vector<Projection> projections_;  // by solid, from its own space
+  std::vector<std::vector<LeafWindow>> windows_;
   std::vector<std::vector<PlaneForm>> planes_;
   std::vector<std::vector<QuadricForm>> quadrics_;
+  mutable std::unordered_map<std::uint64_t, PlaneForm> asked_planes_;
+  mutable std::unordered_map<std::uint64_t, QuadricForm> asked_quadrics_;
 };
 
 }  // namespace arris

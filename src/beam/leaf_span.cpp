@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <tuple>
 #include <utility>
 
 namespace arris {
@@ -49,7 +50,7 @@ class SpanMaker {
  private:
   // False: every ray misses.
   bool add_plane(PlaneRef ref, std::uint32_t face) {
-    const PlaneForm form = view_.plane(place_.solid, ref.plane);
+    const PlaneForm& form = view_.plane(place_.solid, ref.plane);
     const BeamSurface surface{place_.solid, ref.plane, Root::none};
     Sign height = oracle_.find(key_of(Of::height, surface), form.height);
     Interval slopes = range_over(form.slope, oracle_.rect());
@@ -87,7 +88,7 @@ class SpanMaker {
 
   bool add_quadric(std::uint32_t index, std::uint32_t face) {
     const CsgQuadric& quadric = view_.solid(place_.solid).surfaces().quadrics()[index];
-    const QuadricForm form = view_.quadric(place_.solid, index);
+    const QuadricForm& form = view_.quadric(place_.solid, index);
     BeamSurface surface{place_.solid, index, Root::nearer};
     span_.quadric = surface;
     const Sign value = oracle_.find(key_of(Of::value, surface), form.value);
@@ -121,15 +122,17 @@ class SpanMaker {
 
   struct Bounds {
     Interval value, half_slope, curvature, discriminant, root;
+    Sign tangents = Sign::unknown;  // positive: within both; negative: outside one
   };
   [[nodiscard]] Bounds bounds_of(const QuadricForm& form, const BeamSurface& s,
                                  bool is_cone) const {
     const Rect& rect = oracle_.rect();
-    Bounds b{range_over(form.value, rect),
-             range_over(form.half_slope, rect),
-             range_over(form.curvature, rect),
-             range_over(form.discriminant, rect),
-             {}};
+    const bool fixed = view_.direction_fixed();
+    Bounds b;
+    b.value = fixed ? range_over(form.value, rect) : form.value.c;
+    b.half_slope = range_over(form.half_slope, rect);
+    b.curvature = fixed ? form.curvature.c : range_over(form.curvature, rect);
+    b.discriminant = range_over(form.discriminant, rect);
     const auto clip = [&](Interval& range, Of of, const auto& polynomial) {
       const Sign sign = oracle_.find(key_of(of, s), polynomial);
       if (sign == Sign::positive) range.lo = std::max(range.lo, 0.0);
@@ -139,6 +142,16 @@ class SpanMaker {
     clip(b.curvature, Of::curvature, form.curvature);
     clip(b.discriminant, Of::discriminant, form.discriminant);
     if (!is_cone) b.curvature.lo = std::max(b.curvature.lo, 0.0);
+    if (form.has_tangents) {
+      const Sign low = oracle_.find(key_of(Of::tangent_low, s), form.tangents[0]);
+      const Sign high = oracle_.find(key_of(Of::tangent_high, s), form.tangents[1]);
+      if (low == Sign::negative || high == Sign::negative) b.tangents = Sign::negative;
+      if (low == Sign::positive && high == Sign::positive) {
+        b.tangents = Sign::positive;
+        b.discriminant.lo = std::max(b.discriminant.lo, 0.0);
+        if (!fixed) b.half_slope.hi = std::min(b.half_slope.hi, 0.0);
+      }
+    }
     b.root = square_root(b.discriminant);
     return b;
   }
@@ -147,6 +160,7 @@ class SpanMaker {
     const bool bends_out =
         b.curvature.lo < 0;  // some rays may run into a cone that opens before them
     if (!bends_out && (b.discriminant.hi <= 0 || b.half_slope.lo >= 0)) return false;
+    if (b.tangents == Sign::negative) return false;
     const Interval sum = b.root - b.half_slope;
     const Interval depth = quotient(b.value, {std::max(sum.lo, 0.0), std::max(sum.hi, 0.0)});
     if (!(depth.lo <= depth_end_)) return false;
@@ -158,7 +172,10 @@ class SpanMaker {
       far.lo = std::max(far.lo, depth.lo);
       span_.leaving.push_back({far, surface, face});
     }
-    needs_quadric_ = !(b.curvature.hi < 0 || (b.discriminant.lo > 0 && b.half_slope.hi < 0));
+    const bool crosses = b.tangents == Sign::positive || b.discriminant.lo > 0;
+    const bool ahead =
+        b.half_slope.hi < 0 || (b.tangents == Sign::positive && !view_.direction_fixed());
+    needs_quadric_ = !(b.curvature.hi < 0 || (crosses && ahead));
     return true;
   }
 
@@ -209,7 +226,7 @@ class SpanMaker {
 
 // A plane behind the ray, or that it runs along, is never met; its depth is then said to be infinite.
 Met plane_met(const BeamView& view, const SpanEnd& end, SignOracle& oracle) {
-  const PlaneForm form = view.plane(end.surface.solid, end.surface.index);
+  const PlaneForm& form = view.plane(end.surface.solid, end.surface.index);
   const Sign height = oracle.ask(key_of(Of::height, end.surface), form.height);
   const Sign slope = oracle.ask(key_of(Of::slope, end.surface), form.slope);
   if (height * slope == Sign::unknown) return Met::unknown;
@@ -228,8 +245,8 @@ Order reversed(Order order) {
 
 Order order_of_planes(const BeamView& view, const SpanEnd& a, const SpanEnd& b,
                       SignOracle& oracle) {
-  const PlaneForm p = view.plane(a.surface.solid, a.surface.index);
-  const PlaneForm q = view.plane(b.surface.solid, b.surface.index);
+  const PlaneForm& p = view.plane(a.surface.solid, a.surface.index);
+  const PlaneForm& q = view.plane(b.surface.solid, b.surface.index);
   const Sign slopes = oracle.ask(key_of(Of::slope, a.surface), p.slope) *
                       oracle.ask(key_of(Of::slope, b.surface), q.slope);
   if (slopes == Sign::unknown) return Order::unknown;
@@ -241,8 +258,8 @@ Order order_of_planes(const BeamView& view, const SpanEnd& a, const SpanEnd& b,
 // The plane against the middle between the roots.
 Order order_to_middle(const BeamView& view, const SpanEnd& plane, const SpanEnd& root,
                       SignOracle& oracle) {
-  const PlaneForm p = view.plane(plane.surface.solid, plane.surface.index);
-  const QuadricForm q = view.quadric(root.surface.solid, root.surface.index);
+  const PlaneForm& p = view.plane(plane.surface.solid, plane.surface.index);
+  const QuadricForm& q = view.quadric(root.surface.solid, root.surface.index);
   const Interval middle =
       -range_over(q.half_slope, oracle.rect()) / range_over(q.curvature, oracle.rect());
   if (plane.depth.hi < middle.lo) return Order::before;
@@ -260,8 +277,8 @@ Order order_of_plane_and_root(const BeamView& view, const SpanEnd& plane, const 
                               SignOracle& oracle) {
   const CsgQuadric& quadric =
       view.solid(root.surface.solid).surfaces().quadrics()[root.surface.index];
-  const QuadricForm q = view.quadric(root.surface.solid, root.surface.index);
-  const PlaneForm p = view.plane(plane.surface.solid, plane.surface.index);
+  const QuadricForm& q = view.quadric(root.surface.solid, root.surface.index);
+  const PlaneForm& p = view.plane(plane.surface.solid, plane.surface.index);
   const SignKey key{Of::plane_quadric, plane.surface.solid, plane.surface.index, root.surface.solid,
                     root.surface.index};
   const Sign at_plane = oracle.ask(key, quadric_at_plane(q, p, view.direction_fixed()));
@@ -312,7 +329,7 @@ Met decide_end_met(const BeamView& view, const SpanEnd& end, SignOracle& oracle)
                         (end.surface.root == Root::farther || end.surface.root == Root::leaving);
   if (!may_open) return Met::yes;
   // A ray that runs into the opening of a cone leaves it if it comes from the apex's side, but for good.
-  const QuadricForm q = view.quadric(end.surface.solid, end.surface.index);
+  const QuadricForm& q = view.quadric(end.surface.solid, end.surface.index);
   const Sign curvature = oracle.ask(key_of(Of::curvature, end.surface), q.curvature);
   if (curvature == Sign::unknown) return Met::unknown;
   if (curvature == Sign::positive) return Met::yes;
@@ -345,14 +362,22 @@ Order order_of(const BeamView& view, const SpanEnd& a, const SpanEnd& b, SignOra
   if (a.surface.solid == b.surface.solid && a.surface.index == b.surface.index) {
     return a.surface.root == Root::nearer ? Order::before : Order::after;
   }
-  return Order::unknown;
+  const auto rank = [](const SpanEnd& e) {
+    return std::tuple(e.surface.solid, e.surface.index, e.surface.root);
+  };
+  const bool turned = rank(b) < rank(a);
+  const BeamSurface &p = turned ? b.surface : a.surface, &q = turned ? a.surface : b.surface;
+  const SignKey key{Of::root_root, p.solid, p.index,
+                    q.solid,       q.index, std::uint8_t(int(p.root) * 8 + int(q.root))};
+  const Order order = order_of_sign(oracle.ask_without_polynomial(key));
+  return turned ? reversed(order) : order;
 }
 
 namespace {
 
 // Does a ray from outside meet the quadric before it?
 Met quadric_met(const BeamView& view, const BeamSurface& s, SignOracle& oracle) {
-  const QuadricForm q = view.quadric(s.solid, s.index);
+  const QuadricForm& q = view.quadric(s.solid, s.index);
   const bool is_cone =
       view.solid(s.solid).surfaces().quadrics()[s.index].form == CsgQuadric::Form::cone;
   const auto met = [](Sign sign, Sign wanted) {
@@ -366,6 +391,13 @@ Met quadric_met(const BeamView& view, const BeamSurface& s, SignOracle& oracle) 
   if (is_cone) {
     const Met opens = met(oracle.ask(key_of(Of::curvature, s), q.curvature), Sign::negative);
     if (opens != Met::no) return opens;
+  }
+  if (q.has_tangents) {
+    const Met low = met(oracle.ask(key_of(Of::tangent_low, s), q.tangents[0]), Sign::positive);
+    if (low != Met::yes) return low;
+    const Met high = met(oracle.ask(key_of(Of::tangent_high, s), q.tangents[1]), Sign::positive);
+    if (high != Met::yes || !view.direction_fixed()) return high;
+    return met(oracle.ask(key_of(Of::half_slope, s), q.half_slope), Sign::negative);
   }
   const Met hits = met(oracle.ask(key_of(Of::discriminant, s), q.discriminant), Sign::positive);
   if (hits != Met::yes) return hits;
@@ -386,7 +418,7 @@ Met decide_met(const BeamView& view, const LeafSpan& span, LeafPlace place, Sign
     }
     if (leaf.quadric) {
       const BeamSurface s{place.solid, *leaf.quadric, Root::nearer};
-      const QuadricForm q = view.quadric(s.solid, s.index);
+      const QuadricForm& q = view.quadric(s.solid, s.index);
       if (oracle.ask(key_of(Of::value, s), q.value) != Sign::unknown) {
         oracle.ask(key_of(Of::along, s), q.along);
       }

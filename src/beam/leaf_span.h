@@ -2,8 +2,8 @@
 // What       make_span() bounds the depths at which all rays through a rectangle enter and leave a leaf that is planes
 //            and at most one quadric (csg_leaf.h: spheres, boxes, cylinders, cones, convex polyhedra). Of each end it
 //            keeps the surfaces that may make it. What the bounds leave open, SignOracle asks as signs of polynomials.
-// Guarantee  along every ray through the rectangle for which the oracle's assumptions hold, the leaf is entered and left
-//            within the bounds or missed; nothing is missed if `certain` (tests/beam/leaf_span_test.cpp)
+// Guarantee  along every ray through the rectangle for which the oracle's assumptions hold, the leaf is entered and
+//            left within the bounds or missed; nothing is missed if `certain` (tests/beam/region_look_test.cpp)
 #pragma once
 
 #include <cstdint>
@@ -37,12 +37,16 @@ struct SignKey {
     curvature,
     discriminant,
     along,
+    tangent_low,
+    tangent_high,
     plane_plane,
     plane_quadric,
-    plane_middle
+    plane_middle,
+    root_root  // an order that no polynomial here decides
   };
   Of of = Of::height;
   std::uint32_t solid_a = 0, index_a = 0, solid_b = 0, index_b = 0;
+  std::uint8_t roots = 0;  // root_root: which of both
 
   friend bool operator==(const SignKey&, const SignKey&) = default;
 };
@@ -55,7 +59,7 @@ struct Assumption {
 // A sign that must be known before anything more can be said.
 struct OpenSign {
   SignKey key;
-  Quadratic polynomial;
+  std::optional<Quadratic> polynomial;  // nothing: it can be followed both ways, but not measured
 };
 
 enum class Sign : std::int8_t { negative = -1, unknown = 0, positive = 1 };
@@ -85,6 +89,11 @@ class SignOracle {
   Sign ask(const SignKey& key, const Polynomial& p) {
     const Sign sign = find(key, p);
     if (sign == Sign::unknown && !open_) open_ = OpenSign{key, Quadratic(p)};
+    return sign;
+  }
+  Sign ask_without_polynomial(const SignKey& key) {
+    const Sign sign = find_assumed(key);
+    if (sign == Sign::unknown && !open_) open_ = OpenSign{key, std::nullopt};
     return sign;
   }
   [[nodiscard]] const std::optional<OpenSign>& open() const { return open_; }
@@ -132,8 +141,7 @@ std::optional<LeafSpan> make_span(const BeamView& view, LeafPlace place, double 
 enum class Met : std::uint8_t { no, yes, unknown };
 
 enum class Order : std::uint8_t { before, after, same, unknown };
-// Where a ray meets one surface against where it meets another. unknown: the oracle's open sign decides, or if it has
-// none, the surfaces are two quadrics whose depths overlap.
+// Where a ray meets one surface against where it meets another. unknown: the oracle's open sign decides.
 Order order_of(const BeamView& view, const SpanEnd& a, const SpanEnd& b, SignOracle& oracle);
 
 // Does a ray get there at all? Only ends of which the depth may be infinite are in doubt.

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 namespace arris {
 namespace {
@@ -57,14 +58,85 @@ Interval range_over(const Quadratic& p, const Rect& rect) {
   return c.value + parabola_range(c.xx, c.dx) + parabola_range(c.yy, c.dy) + symmetric(c.xy);
 }
 
+namespace {
+
+double middle(Interval a) {
+  return a.lo / 2 + a.hi / 2;
+}
+
+// What is not linear, over the whole rectangle.
+Slab plain_slab(const Centered& c) {
+  const double dx = middle(c.dx), dy = middle(c.dy);
+  const Interval unit_square(0, 1);
+  const Interval rest = symmetric(c.dx - Interval(dx)) + symmetric(c.dy - Interval(dy)) +
+                        c.xx * unit_square + c.yy * unit_square + symmetric(c.xy);
+  return {c.value + rest, dx / c.hx, dy / c.hy};
+}
+
+// In coordinates u along the gradient and v across: value + gu u + gv v + a u² + b u v + e v², |u|, |v| ≤ reach.
+struct Turned {
+  double nx, ny, reach;
+  Interval value, gu, gv, a, b, e;
+};
+
+Turned turn(const Centered& c, double nx, double ny) {
+  const Interval x(nx), y(ny);
+  Turned t{nx, ny, (std::abs(nx) + std::abs(ny)) * (1 + 1e-12), c.value, {}, {}, {}, {}, {}};
+  t.gu = c.dx * x + c.dy * y;
+  t.gv = c.dy * x - c.dx * y;
+  t.a = c.xx * square(x) + c.xy * x * y + c.yy * square(y);
+  t.b = Interval(2) * (c.yy - c.xx) * x * y + c.xy * (square(x) - square(y));
+  t.e = c.xx * square(y) - c.xy * x * y + c.yy * square(x);
+  return t;
+}
+
+// All zeros in the rectangle: u = -(value + gv v + a u² + b u v + e v²) / gu, put in again and again.
+Interval zeros_of(const Turned& t) {
+  const Interval v(-t.reach, t.reach), vv(0, next_up(t.reach * t.reach));
+  Interval u(-t.reach, t.reach);
+  for (int i = 0; i < 3; ++i) {
+    const Interval again = -(t.value + t.gv * v + t.a * square(u) + t.b * u * v + t.e * vv) / t.gu;
+    u = intersection(u, again);
+    if (!(u.lo <= u.hi)) break;
+  }
+  return u;
+}
+
+// Where p grows all along u, only what is not linear near its zeros counts: beyond them the sign is known.
+std::optional<Slab> narrow_slab(const Centered& c) {
+  const double gx = middle(c.dx), gy = middle(c.dy), size = std::hypot(gx, gy);
+  if (!(size > 0)) return std::nullopt;
+  const Turned t = turn(c, gx / size, gy / size);
+  const Interval v(-t.reach, t.reach), vv(0, next_up(t.reach * t.reach));
+  if (!((t.gu + Interval(2) * t.a * v + t.b * v).lo > 0)) return std::nullopt;
+  const Interval zeros = zeros_of(t);
+  if (!(zeros.lo <= zeros.hi)) return std::nullopt;
+  const double u0 = middle(zeros);
+  const Interval w = zeros - Interval(u0);
+  const Interval at = t.value + t.gu * Interval(u0) + t.a * square(Interval(u0));
+  const Interval slope_u = t.gu + Interval(2) * t.a * Interval(u0);
+  const Interval slope_v = t.gv + t.b * Interval(u0);
+  const double su = middle(slope_u), sv = middle(slope_v);
+  const double rounding = 1e-13 * (std::abs(su) + std::abs(sv)) * t.reach;
+  const Interval rest = (slope_u - Interval(su)) * w + (slope_v - Interval(sv)) * v +
+                        t.a * square(w) + t.b * w * v + t.e * vv + Interval(-rounding, rounding);
+  const Interval bounds = at + rest;
+  // The bounds' own zeros must not leave the strip.
+  const double tilt = std::abs(sv) * t.reach;
+  if (su * (zeros.lo - u0) + tilt + bounds.lo > 0 || su * (zeros.hi - u0) - tilt + bounds.hi < 0) {
+    const Interval strip = -zeros + Interval(-1e-13, 1e-13);
+    return Slab{strip, t.nx / c.hx, t.ny / c.hy};
+  }
+  const double dx = su * t.nx - sv * t.ny, dy = su * t.ny + sv * t.nx;
+  return Slab{bounds - Interval(su) * Interval(u0), dx / c.hx, dy / c.hy};
+}
+
+}  // namespace
+
 Slab slab_over(const Quadratic& p, const Rect& rect) {
   const Centered c = center(p, rect);
-  const double dx = (c.dx.lo / 2 + c.dx.hi / 2) / c.hx, dy = (c.dy.lo / 2 + c.dy.hi / 2) / c.hy;
-  const Interval unit_square(0, 1);
-  const Interval rest = symmetric(c.dx - Interval(dx) * Interval(c.hx)) +
-                        symmetric(c.dy - Interval(dy) * Interval(c.hy)) + c.xx * unit_square +
-                        c.yy * unit_square + symmetric(c.xy);
-  return {c.value + rest, dx, dy};
+  const std::optional<Slab> narrow = narrow_slab(c);
+  return narrow ? *narrow : plain_slab(c);
 }
 
 }  // namespace arris

@@ -1,8 +1,8 @@
 // polynomial.h — polynomials over the picture, with coefficients that are known between two doubles
 // What       Linear and Quadratic are polynomials of the picture's x and y. All that a beam asks of planes and quadrics
 //            is a sign of one of these (beam_view.h), and the outlines that it sees are their zeros.
-// Guarantee  range_over() holds every value over the rectangle: of a Linear it is exact but for rounding, of a Quadratic
-//            too, but for its mixed term (tests/beam/polynomial_test.cpp)
+// Guarantee  range_over() holds every value over the rectangle: of a Linear it is exact but for rounding, of a
+//            Quadratic too, but for its mixed term (tests/beam/polynomial_test.cpp)
 // Legend     c + x·x + y·y + xx·x² + xy·xy + yy·y²
 #pragma once
 
@@ -66,8 +66,8 @@ inline Quadratic squared(const Linear& a) {
 Interval range_over(const Linear& p, const Rect& rect);
 Interval range_over(const Quadratic& p, const Rect& rect);
 
-// p lies over the rectangle between two planes: value + dx (x - middle) + dy (y - middle), where value is an interval
-// that holds what is not linear, too.
+// Two planes, value + dx (x - middle) + dy (y - middle) for both ends of value: in the rectangle p is positive where the
+// lower one is, and negative where the upper one is.
 struct Slab {
   Interval value;
   double dx = 0, dy = 0;

@@ -1,6 +1,7 @@
 #include "beam/region_look.h"
 
 #include <algorithm>
+#include <iterator>
 #include <optional>
 
 namespace arris {
@@ -71,7 +72,10 @@ class Looker {
       : view_(view), parts_(parts), rect_(rect), depth_end_(depth_end), options_(options) {}
 
   LookTree run() {
+    make_first_spans();
     follow();
+    tree_.complete = std::ranges::none_of(
+        tree_.nodes, [](const LookNode& n) { return n.kind == LookNode::Kind::unknown; });
     return std::move(tree_);
   }
 
@@ -97,11 +101,16 @@ class Looker {
     assumptions_.back().positive = true;
     const std::uint32_t positive = follow();
     assumptions_.pop_back();
-    join(node, open, negative, positive);
+    if (!join(node, open, negative, positive)) {
+      tree_.nodes.resize(node + 1);
+      find_window(oracle);  // for its leaves
+      tree_.nodes[node] = give_up();
+    }
     return node;
   }
 
-  void join(std::uint32_t node, const OpenSign& open, std::uint32_t negative,
+  // False: the ends differ, and nothing says where.
+  bool join(std::uint32_t node, const OpenSign& open, std::uint32_t negative,
             std::uint32_t positive) {
     const LookNode& a = tree_.nodes[negative];
     const LookNode& b = tree_.nodes[positive];
@@ -110,13 +119,15 @@ class Looker {
     if (ends) {
       tree_.nodes[node] = a;
       tree_.nodes.resize(negative);
-      return;
+      return true;
     }
+    if (!open.polynomial) return false;
     LookNode& joined = tree_.nodes[node];
     joined.kind = LookNode::Kind::sign;
-    joined.polynomial = open.polynomial;
+    joined.polynomial = *open.polynomial;
     joined.negative = negative;
     joined.positive = positive;
+    return true;
   }
 
   LookNode give_up() {
@@ -135,24 +146,64 @@ class Looker {
       }
     }
     node.count = std::uint32_t(tree_.candidates.size()) - node.first;
-    tree_.complete = false;
     return node;
   }
 
-  void make_spans(const SignOracle& oracle) {
-    slots_.clear();
+  // The spans without assumptions, once.
+  void make_first_spans() {
+    const std::vector<Assumption> none;
+    const SignOracle oracle(rect_, none);
     for (std::uint32_t p = 0; p < parts_.size(); ++p) {
+      first_of_part_.push_back(std::uint32_t(first_slots_.size()));
       const auto& leaves = parts_[p].expression.leaves();
+      const bool is_goal = options_.only && p + 1 == parts_.size();
       for (std::uint32_t slot = 0; slot < leaves.size(); ++slot) {
         const LeafPlace place{parts_[p].solid, leaves[slot]};
-        slots_.push_back({p, slot, place, make_span(view_, place, depth_end_, oracle)});
+        first_slots_.push_back(
+            {p, slot, place,
+             is_goal ? make_goal_span() : make_span(view_, place, depth_end_, oracle)});
       }
     }
-    first_of_part_.clear();
-    std::uint32_t first = 0;
-    for (const BeamPart& part : parts_) {
-      first_of_part_.push_back(first);
-      first += std::uint32_t(part.expression.leaves().size());
+  }
+  // The plane that the light is to reach is entered for good.
+  [[nodiscard]] LeafSpan make_goal_span() const {
+    const PlaneForm& form = view_.plane(options_.only->solid, options_.only->plane);
+    const Interval height = absolute(range_over(form.height, rect_));
+    const Interval slope = absolute(range_over(form.slope, rect_));
+    LeafSpan span;
+    span.enter.lo = slope.hi > 0 ? std::max(0.0, next_down(height.lo / slope.hi)) : 0;
+    span.enter.hi = slope.lo > 0 ? next_up(height.hi / slope.lo) : kInfinity;
+    span.leave = {kInfinity, kInfinity};
+    span.certain = true;
+    const BeamSurface surface{options_.only->solid, options_.only->plane, BeamSurface::Root::none};
+    span.entering.push_back({span.enter, surface, 0});
+    return span;
+  }
+
+  // Does the assumption change what is known of the leaf's span?
+  [[nodiscard]] bool concerns(const Assumption& assumption, const LeafPlace& place) const {
+    if (assumption.key.solid_a != place.solid) return false;
+    const auto& leaf = std::get<ConvexLeaf>(view_.solid(place.solid).leaf(place.leaf).shape);
+    if (is_of_plane(assumption)) {
+      return std::ranges::any_of(leaf.planes,
+                                 [&](PlaneRef ref) { return ref.plane == assumption.key.index_a; });
+    }
+    return leaf.quadric && *leaf.quadric == assumption.key.index_a;
+  }
+  static bool is_of_plane(const Assumption& a) {
+    return a.key.of == SignKey::Of::height || a.key.of == SignKey::Of::slope;
+  }
+  static bool is_of_one(const Assumption& a) { return a.key.of < SignKey::Of::plane_plane; }
+
+  void make_spans(const SignOracle& oracle, const std::vector<Assumption>& of_one) {
+    slots_ = first_slots_;
+    for (SpanSlot& s : slots_) {
+      const bool is_goal = options_.only && s.part + 1 == parts_.size();
+      if (is_goal ||
+          std::ranges::none_of(of_one, [&](const Assumption& a) { return concerns(a, s.place); })) {
+        continue;
+      }
+      s.span = make_span(view_, s.place, depth_end_, oracle);
     }
   }
 
@@ -164,7 +215,14 @@ class Looker {
 
   // The depths between which something certainly becomes visible, and the leaves that matter there. False: nothing.
   bool find_window(const SignOracle& oracle) {
-    make_spans(oracle);
+    std::vector<Assumption> of_one;
+    std::ranges::copy_if(assumptions_, std::back_inserter(of_one), is_of_one);
+    if (has_window_ && std::ranges::equal(of_one, window_assumptions_, same_assumption)) {
+      return window_.lo < kInfinity;
+    }
+    make_spans(oracle, of_one);
+    window_assumptions_ = std::move(of_one);
+    has_window_ = true;
     std::vector<double> depths{0};
     for (const SpanSlot& s : slots_) {
       if (!s.span) continue;
@@ -200,6 +258,10 @@ class Looker {
     widen_window();
     if (assumptions_.empty()) tree_.depth_end = window_.hi;
     return true;
+  }
+
+  static bool same_assumption(const Assumption& a, const Assumption& b) {
+    return a.key == b.key && a.positive == b.positive;
   }
 
   // To where no leaf that matters begins to be undecided before it.
@@ -282,7 +344,13 @@ class Looker {
     const SpanSlot& s = *window_slots_[event.index];
     LookNode node;
     node.kind = LookNode::Kind::surface;
-    node.seen = {s.place.solid, s.place.leaf, event.end->face, event.end->surface, enters_solid};
+    const BeamSurface& surface = event.end->surface;
+    const bool counts =
+        !options_.only || (surface.is_plane() && surface.solid == options_.only->solid &&
+                           surface.index == options_.only->plane);
+    if (counts) node.seen = {s.place.solid, s.place.leaf, event.end->face, surface, enters_solid};
+    if (options_.only && counts) node.seen = {surface.solid, 0, 0, surface, true};
+    if (!counts) node.seen.surface.root = BeamSurface::Root::nearer;  // no plane
     return node;
   }
 
@@ -349,7 +417,9 @@ class Looker {
   LookOptions options_;
   LookTree tree_;
   std::vector<Assumption> assumptions_;
-  std::vector<SpanSlot> slots_;
+  std::vector<SpanSlot> first_slots_, slots_;
+  std::vector<Assumption> window_assumptions_;  // that the window is made under
+  bool has_window_ = false;
   std::vector<std::uint32_t> first_of_part_;
   Interval window_;
   std::vector<BeamPart> pruned_;
@@ -369,7 +439,9 @@ std::vector<BeamPart> prune_parts(const BeamView& view, const std::vector<BeamPa
     covers.clear();
     bool any = false;
     for (const std::uint32_t leaf : part.expression.leaves()) {
-      const auto span = make_span(view, {part.solid, leaf}, depth_end, oracle);
+      const bool is_near = view.window(part.solid, leaf).meets(rect);
+      const auto span =
+          is_near ? make_span(view, {part.solid, leaf}, depth_end, oracle) : std::nullopt;
       Cover cover = Cover::on;
       if (!span) cover = Cover::out;
       if (span && span->starts_inside && span->certain && span->leave.lo > depth_end) {
@@ -384,12 +456,28 @@ std::vector<BeamPart> prune_parts(const BeamView& view, const std::vector<BeamPa
   return pruned;
 }
 
+namespace {
+
+// A part of one leaf, of which only the span counts.
+CsgExpression make_goal() {
+  CsgTree tree;
+  tree.nodes.push_back({0, CsgOperation::unite, {}});
+  tree.leaves.emplace_back();
+  return CsgExpression(tree, {true});
+}
+
+}  // namespace
+
 LookTree look(const BeamView& view, const std::vector<BeamPart>& parts, const Rect& rect,
               double depth_end, const LookOptions& options) {
   std::size_t leaves = 0;
   for (const BeamPart& part : parts) leaves += part.expression.leaves().size();
   if (leaves <= options.most_leaves) {
-    return Looker(view, parts, rect, depth_end, options).run();
+    if (!options.only) return Looker(view, parts, rect, depth_end, options).run();
+    static const CsgExpression goal = make_goal();
+    std::vector<BeamPart> with_goal = parts;
+    with_goal.push_back({options.only->solid, goal});
+    return Looker(view, with_goal, rect, depth_end, options).run();
   }
   LookTree tree;
   tree.complete = false;

@@ -14,6 +14,7 @@
 #include <array>
 #include <cstdint>
 #include <limits>
+#include <optional>
 #include <vector>
 
 #include "beam/beam_view.h"
@@ -56,6 +57,9 @@ struct LookTree {
 };
 
 struct LookOptions {
+  // Set: only whether the rays meet this plane before any surface of `parts`. What they meet before it counts as one
+  // surface, which is no plane, so that its order does not matter. Precondition: every ray meets the plane.
+  std::optional<LitPlane> only;
   std::uint32_t most_signs = 6;  // followed both ways, one below the other
   std::uint32_t most_leaves =
       16;  // more are not looked at: everything is unknown, without candidates

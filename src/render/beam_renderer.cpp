@@ -55,6 +55,26 @@ std::vector<BeamSolid> make_solids(const SceneGeometry& geometry) {
   return solids;
 }
 
+// In the order of `emitters`. None where translucent surfaces make shadows of more than two kinds.
+std::vector<LightPlace> make_light_places(const SceneGeometry& geometry,
+                                          const std::vector<Emitter>& emitters) {
+  std::vector<LightPlace> places;
+  if (geometry.any_translucent) return places;
+  for (const Emitter& e : emitters) {
+    LightPlace place;
+    if (e.kind == EmitterKind::directional) {
+      place.is_directional = true;
+      place.direction = -Vec3d(geometry.lights.directionals[e.index].wi);
+    } else if (e.kind == EmitterKind::point) {
+      place.position = Vec3d(geometry.lights.points[e.index].position);
+    } else {
+      place.position = Vec3d(geometry.lights.spots[e.index].position);
+    }
+    places.push_back(place);
+  }
+  return places;
+}
+
 // Anything that lights a surface besides point-like lights, or shows behind it.
 bool needs_paths(const SceneGeometry& geometry, const PathSettings& settings,
                  std::size_t point_like) {
@@ -142,8 +162,9 @@ class BeamRenderer final : public Renderer {
     job.emitters = point_like_emitters(scene.geometry().lights);
     job.needs_paths = needs_paths(scene.geometry(), job.settings, job.emitters.size());
     const std::vector<BeamSolid> solids = make_solids(scene.geometry());
+    const std::vector<LightPlace> lights = make_light_places(scene.geometry(), job.emitters);
     const BeamTracer tracer(solids, job.eye, image.width_px, image.height_px,
-                            {.threads = options.threads});
+                            {.threads = options.threads}, lights);
     const std::vector<BeamTile> tiles = tracer.make_tiles();
     Layers layers;
     layers.picture.color = Image(image.width_px, image.height_px, 3);
