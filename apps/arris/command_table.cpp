@@ -78,7 +78,10 @@ CommandRow render_row() {
           "exact sums besides, to the bytes of the whole"},
          {"--integrator", "path|beam",
           "path: path tracing; beam: CSG solids with certain bounds on what each pixel shows "
-          "(default: path)"}}},
+          "(default: path)"},
+         {"--beam-rule", "certified|corners",
+          "how beams find uniform regions; certified: by bounds that hold; corners: by four rays, "
+          "as in the paper of 1996, for comparison (default: certified)"}}},
        input_group(),
        camera_group(),
        {"Staging",

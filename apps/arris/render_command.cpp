@@ -156,7 +156,8 @@ int run_render(const Arguments& arguments) {
   RenderJob job = make_job(request, scene);
   job.options.stop = &stop;
   job.options.on_progress = [&](const Progress& progress) { console.show_progress(progress); };
-  const JobResult result = run_job(*make_renderer(request.integrator), *prepared, job);
+  const JobResult result =
+      run_job(*make_renderer(request.integrator, request.beam_rule), *prepared, job);
   console.end_progress();
   stats.rays = result.rays;
   stats.beam = result.beam;

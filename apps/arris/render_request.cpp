@@ -84,6 +84,16 @@ Integrator parse_integrator(const Arguments& arguments) {
   return kIntegrators[parse_choice(*given, {"path", "beam"})];
 }
 
+BeamRule parse_beam_rule(const Arguments& arguments, Integrator integrator) {
+  const auto given = find_given(arguments, "--beam-rule");
+  if (!given) return BeamRule::certified;
+  if (integrator != Integrator::beam) {
+    throw Error(Error::Kind::input, "--beam-rule", "needs --integrator beam");
+  }
+  constexpr BeamRule kRules[] = {BeamRule::certified, BeamRule::corners};
+  return kRules[parse_choice(*given, {"certified", "corners"})];
+}
+
 // The beam renderer goes through the picture once, and takes no meshes.
 void check_beam_options(const Arguments& arguments) {
   for (const char* option : {"--time", "--checkpoint"}) {
@@ -156,8 +166,8 @@ void check_files(const RenderRequest& request) {
 
 }  // namespace
 
-std::unique_ptr<Renderer> make_renderer(Integrator integrator) {
-  return integrator == Integrator::beam ? make_beam_renderer() : make_path_renderer();
+std::unique_ptr<Renderer> make_renderer(Integrator integrator, BeamRule rule) {
+  return integrator == Integrator::beam ? make_beam_renderer(rule) : make_path_renderer();
 }
 const char* name_of(Integrator integrator) {
   return integrator == Integrator::beam ? "beam" : "path";
@@ -169,6 +179,7 @@ RenderRequest make_render_request(const Arguments& arguments) {
   request.load = load_options_of(arguments);
   request.output = parse_output(arguments);
   request.integrator = parse_integrator(arguments);
+  request.beam_rule = parse_beam_rule(arguments, request.integrator);
   if (request.integrator == Integrator::beam) check_beam_options(arguments);
   request.aovs = parse_aovs(arguments, request.integrator);
   request.stage = make_stage_options(arguments);

@@ -119,9 +119,11 @@ class Renderer {
 
 std::unique_ptr<Renderer> make_path_renderer();
 
+// certified: bounds decide; corners: four rays decide, as in the paper, for comparison.
+enum class BeamRule { certified, corners };
 // CSG solids with the coverage of every surface in every pixel between certain bounds (docs/beam.md). Every pixel is
 // its square, whatever the image's filter. Precondition: beam_problems() is empty.
-std::unique_ptr<Renderer> make_beam_renderer();
+std::unique_ptr<Renderer> make_beam_renderer(BeamRule rule = BeamRule::certified);
 // What of a scene the beam renderer can't take, one line each with a remedy.
 std::vector<std::string> beam_problems(const Scene& scene);
 

@@ -8,6 +8,7 @@
 #include "base/flush_denormals.h"
 #include "base/parallel_for.h"
 #include "beam/beam_tracer.h"
+#include "beam/corner_tracer.h"
 #include "csg/csg_cells.h"
 #include "image/picture_sum.h"
 #include "render/beam_shading.h"
@@ -127,8 +128,8 @@ struct TileCounts {
   PathRays paths;
 };
 
-TileCounts render_tile(const Job& job, const BeamTracer& tracer, const BeamTile& tile,
-                       Layers& layers) {
+template <class Tracer>
+TileCounts render_tile(const Job& job, const Tracer& tracer, const BeamTile& tile, Layers& layers) {
   TileCounts counts;
   counts.beam = tracer.trace_tile(tile, [&](const BeamPixel& pixel) {
     const FlushDenormals flush;
@@ -148,8 +149,29 @@ double seconds_since(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
+// Those of tiles that are left out, as the render is to stop, are empty.
+template <class Tracer>
+std::vector<TileCounts> render_tiles(const Job& job, const Tracer& tracer, Layers& layers) {
+  const auto start = std::chrono::steady_clock::now();
+  const std::vector<BeamTile> tiles = tracer.make_tiles();
+  std::vector<TileCounts> counts(tiles.size());
+  std::atomic<std::size_t> finished = 0;
+  std::mutex reporting;
+  parallel_for(tiles.size(), {.threads = job.options.threads}, [&](std::size_t i) {
+    if (job.options.stop != nullptr && job.options.stop->load()) return;
+    counts[i] = render_tile(job, tracer, tiles[i], layers);
+    ++finished;
+    if (!job.options.on_progress) return;
+    const std::scoped_lock lock(reporting);
+    job.options.on_progress({double(finished) / double(tiles.size()), seconds_since(start)});
+  });
+  return counts;
+}
+
 class BeamRenderer final : public Renderer {
  public:
+  explicit BeamRenderer(BeamRule rule) : rule_(rule) {}
+
   [[nodiscard]] std::vector<std::string> aovs() const override {
     return {kCoverageLo, kCoverageHi, kUncertified};
   }
@@ -162,24 +184,20 @@ class BeamRenderer final : public Renderer {
     job.emitters = point_like_emitters(scene.geometry().lights);
     job.needs_paths = needs_paths(scene.geometry(), job.settings, job.emitters.size());
     const std::vector<BeamSolid> solids = make_solids(scene.geometry());
-    const std::vector<LightPlace> lights = make_light_places(scene.geometry(), job.emitters);
-    const BeamTracer tracer(solids, job.eye, image.width_px, image.height_px,
-                            {.threads = options.threads}, lights);
-    const std::vector<BeamTile> tiles = tracer.make_tiles();
     Layers layers;
     layers.picture.color = Image(image.width_px, image.height_px, 3);
     for (const std::string& name : options.aovs) {
       layers.picture.layers.push_back({name, Image(image.width_px, image.height_px, 1)});
     }
-    std::vector<TileCounts> counts(tiles.size());
-    std::atomic<std::size_t> finished = 0;
-    std::atomic<bool> stopped = false;
-    parallel_for(tiles.size(), {.threads = options.threads}, [&](std::size_t i) {
-      stopped = stopped || (options.stop != nullptr && options.stop->load());
-      if (stopped) return;
-      counts[i] = render_tile(job, tracer, tiles[i], layers);
-      report(options, double(++finished) / double(tiles.size()), seconds_since(start));
-    });
+    const BeamOptions beam{.threads = options.threads};
+    const std::vector<LightPlace> lights = make_light_places(scene.geometry(), job.emitters);
+    const auto render_with = [&](const auto& tracer) { return render_tiles(job, tracer, layers); };
+    const std::vector<TileCounts> counts =
+        rule_ == BeamRule::corners
+            ? render_with(CornerTracer(solids, job.eye, image.width_px, image.height_px, beam))
+            : render_with(
+                  BeamTracer(solids, job.eye, image.width_px, image.height_px, beam, lights));
+    const bool stopped = options.stop != nullptr && options.stop->load();
     RenderResult result;
     result.samples = options.samples;
     if (stopped) result.samples.last = result.samples.first;
@@ -204,19 +222,13 @@ class BeamRenderer final : public Renderer {
     result.rays.camera = sum.rays;
   }
 
-  void report(const RenderOptions& options, double done, double seconds) const {
-    if (!options.on_progress) return;
-    const std::scoped_lock lock(report_mutex_);
-    options.on_progress({done, seconds});
-  }
-
-  mutable std::mutex report_mutex_;
+  BeamRule rule_;
 };
 
 }  // namespace
 
-std::unique_ptr<Renderer> make_beam_renderer() {
-  return std::make_unique<BeamRenderer>();
+std::unique_ptr<Renderer> make_beam_renderer(BeamRule rule) {
+  return std::make_unique<BeamRenderer>(rule);
 }
 
 std::vector<std::string> beam_problems(const Scene& scene) {
