@@ -189,7 +189,9 @@ class BeamRenderer final : public Renderer {
     for (const std::string& name : options.aovs) {
       layers.picture.layers.push_back({name, Image(image.width_px, image.height_px, 1)});
     }
-    const BeamOptions beam{.threads = options.threads};
+    // Four rays a region don't get better by smaller ones as bounds do.
+    const double least = rule_ == BeamRule::corners ? 1.0 / 8 : BeamOptions{}.least_region;
+    const BeamOptions beam{.least_region = least, .threads = options.threads};
     const std::vector<LightPlace> lights = make_light_places(scene.geometry(), job.emitters);
     const auto render_with = [&](const auto& tracer) { return render_tiles(job, tracer, layers); };
     const std::vector<TileCounts> counts =
