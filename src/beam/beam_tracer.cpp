@@ -136,6 +136,8 @@ class BeamTracer::Tracer {
       surface.estimate = end.estimate;
       surface.sample = end.sample;
       surface.sample_weight = end.estimate;
+      const bool is_curved = node.kind == LookNode::Kind::surface && !node.seen.surface.is_plane();
+      if (is_curved && end.lo < 1) surface.samples = end.samples;
       add(surface);
     }
   }
@@ -212,6 +214,7 @@ class BeamTracer::Tracer {
       known.lo += surface.lo;
       known.hi += surface.hi;
       known.estimate += surface.estimate;
+      known.samples.insert(known.samples.end(), surface.samples.begin(), surface.samples.end());
       if (surface.sample_weight > known.sample_weight) {
         known.sample = surface.sample;
         known.sample_weight = surface.sample_weight;

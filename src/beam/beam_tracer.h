@@ -32,6 +32,7 @@ struct PixelSurface {
   double lo = 0, hi = 0, estimate = 0;   // parts of the pixel; estimates add up to 1
   Vec2d sample;                          // a point of the picture where it is seen, or may be
   double sample_weight = -1;             // the area that the sample stands for
+  std::vector<AreaSample> samples;       // more of them, of curved surfaces
 };
 
 struct BeamPixel {

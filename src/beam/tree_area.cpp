@@ -181,11 +181,25 @@ class Integrator {
     }
   }
 
+  // To the nearest one where there are enough.
+  static void add_sample(std::vector<AreaSample>& samples, AreaSample sample) {
+    if (!(sample.weight > 0)) return;
+    if (samples.size() < kMostSamples) {
+      samples.push_back(sample);
+      return;
+    }
+    const auto distance = [&](const AreaSample& s) {
+      return std::hypot(s.at.x - sample.at.x, s.at.y - sample.at.y);
+    };
+    std::ranges::min_element(samples, {}, distance)->weight += sample.weight;
+  }
+
   void add(std::uint32_t node, double lo, double hi, double estimate, Vec2d sample, double weight) {
     NodeArea& a = of_node_[node];
     a.area.lo += lo;
     a.area.hi += hi;
     a.area.estimate += estimate;
+    add_sample(a.area.samples, {sample, lo});
     if (weight <= a.best) return;
     a.best = weight;
     a.area.sample = sample;

@@ -13,12 +13,22 @@
 
 namespace arris {
 
+// A point of the picture, and how much it stands for.
+struct AreaSample {
+  Vec2d at;
+  double weight = 0;
+};
+
 struct EndArea {
   std::uint32_t node = 0;  // of the tree: a surface, nothing or unknown
   double lo = 0, hi = 0;
   double estimate = 0;  // estimates of all ends add up to the rectangle
   Vec2d sample;  // in the rectangle, on this end's side of all signs where there is such a piece
+  // More of them, spread over what is certain; at most kMostSamples.
+  std::vector<AreaSample> samples;
 };
+
+inline constexpr std::size_t kMostSamples = 16;
 
 struct AreaOptions {
   double tolerance = 1.0 / 4096;  // of hi - lo, per unit of a piece's side

@@ -93,10 +93,26 @@ std::uint32_t sample_count(const Job& job, double share) {
   return std::max<std::uint32_t>(1, std::uint32_t(std::lround(all * share)));
 }
 
+// Direct light of a surface: of the point that stands for it, or of several where it is curved.
+Rgb shade_directly(const Job& job, const PixelSurface& surface, const KnownSight& sight,
+                   PathRays& rays) {
+  if (surface.samples.size() < 2) {
+    return direct_light(job.scene, job.emitters, sight, surface, rays);
+  }
+  Rgb sum;
+  double weight = 0;
+  for (const AreaSample& sample : surface.samples) {
+    const KnownSight other = make_sight(job.scene, job.eye, surface, sample.at);
+    sum += direct_light(job.scene, job.emitters, other, surface, rays) * float(sample.weight);
+    weight += sample.weight;
+  }
+  return sum * float(1 / weight);
+}
+
 Rgb shade(const Job& job, const BeamPixel& pixel, const PixelSurface& surface,
           std::uint32_t& sample, PathRays& rays) {
   const KnownSight sight = make_sight(job.scene, job.eye, surface, surface.sample);
-  const Rgb direct = direct_light(job.scene, job.emitters, sight, surface, rays);
+  const Rgb direct = shade_directly(job, surface, sight, rays);
   if (!job.needs_paths) return direct;
   Rgb other;
   const std::uint32_t count = sample_count(job, surface.estimate);
