@@ -474,9 +474,9 @@ LookTree look(const BeamView& view, const std::vector<BeamPart>& parts, const Re
   for (const BeamPart& part : parts) leaves += part.expression.leaves().size();
   if (leaves <= options.most_leaves) {
     if (!options.only) return Looker(view, parts, rect, depth_end, options).run();
-    static const CsgExpression goal = make_goal();
+    static const CsgExpression kGoal = make_goal();
     std::vector<BeamPart> with_goal = parts;
-    with_goal.push_back({options.only->solid, goal});
+    with_goal.push_back({options.only->solid, kGoal});
     return Looker(view, with_goal, rect, depth_end, options).run();
   }
   LookTree tree;

@@ -84,6 +84,7 @@ class Integrator {
 
   std::vector<EndArea> run(const Rect& rect) {
     visit(rect, descend(0, rect));
+    if (!is_end(descend(0, rect))) add_samples(rect);
     for (std::size_t i = 0; i < of_node_.size(); ++i) {
       of_node_[i].area.node = std::uint32_t(i);
       if (of_node_[i].area.hi > 0) ends_.push_back(of_node_[i].area);
@@ -181,17 +182,14 @@ class Integrator {
     }
   }
 
-  // To the nearest one where there are enough.
-  static void add_sample(std::vector<AreaSample>& samples, AreaSample sample) {
-    if (!(sample.weight > 0)) return;
-    if (samples.size() < kMostSamples) {
-      samples.push_back(sample);
-      return;
+  // Of a regular grid, those that are on an end's side of all signs.
+  void add_samples(const Rect& rect) {
+    for (int k = 0; k < kSampleGrid * kSampleGrid; ++k) {
+      const Vec2d at{rect.x0 + rect.width() * (k % kSampleGrid + 0.5) / kSampleGrid,
+                     rect.y0 + rect.height() * (k / kSampleGrid + 0.5) / kSampleGrid};
+      const std::uint32_t node = descend(0, {at.x, at.y, at.x, at.y});
+      if (is_end(node)) of_node_[node].area.samples.push_back({at, rect.area()});
     }
-    const auto distance = [&](const AreaSample& s) {
-      return std::hypot(s.at.x - sample.at.x, s.at.y - sample.at.y);
-    };
-    std::ranges::min_element(samples, {}, distance)->weight += sample.weight;
   }
 
   void add(std::uint32_t node, double lo, double hi, double estimate, Vec2d sample, double weight) {
@@ -199,7 +197,6 @@ class Integrator {
     a.area.lo += lo;
     a.area.hi += hi;
     a.area.estimate += estimate;
-    add_sample(a.area.samples, {sample, lo});
     if (weight <= a.best) return;
     a.best = weight;
     a.area.sample = sample;

@@ -24,11 +24,11 @@ struct EndArea {
   double lo = 0, hi = 0;
   double estimate = 0;  // estimates of all ends add up to the rectangle
   Vec2d sample;  // in the rectangle, on this end's side of all signs where there is such a piece
-  // More of them, spread over what is certain; at most kMostSamples.
+  // Those of a regular grid that are on this end's side, of one weight.
   std::vector<AreaSample> samples;
 };
 
-inline constexpr std::size_t kMostSamples = 16;
+inline constexpr int kSampleGrid = 8;  // points a side
 
 struct AreaOptions {
   double tolerance = 1.0 / 4096;  // of hi - lo, per unit of a piece's side
