@@ -3,7 +3,6 @@
 
 #include <string>
 
-#include "arris/io.h"
 #include "arris/scene.h"
 
 namespace arris::program {
@@ -15,6 +14,6 @@ struct Input {
 };
 
 // "-": stdin, in a format told by its content.
-Input load_input(const std::string& name, const LoadOptions& options);
+Input load_input(const std::string& name);
 
 }  // namespace arris::program

@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "arris/command_line.h"
-#include "arris/io.h"
 #include "arris/render.h"
 #include "arris/scene.h"
 #include "render/staging.h"
@@ -15,8 +14,7 @@
 namespace arris::program {
 
 struct RenderRequest {
-  std::string input;  // "-": stdin
-  LoadOptions load;
+  std::string input;   // "-": stdin
   std::string output;  // "-": PNG to stdout
   std::optional<std::string> stats;
   std::optional<std::filesystem::path> checkpoint;
