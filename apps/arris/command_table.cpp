@@ -12,7 +12,8 @@ OptionGroup rounding_group(const std::string& default_radius) {
       "Rounded edges",
       {{"--round", "auto|none|R|R%",
         "radius in scene units, or in percent of each object's inradius (the largest ball that "
-        "fits); auto: large enough to be seen, small enough for the part (default: " +
+        "fits; half its walls and faces where it isn't convex); auto: large enough to be seen, "
+        "small enough for the part (default: " +
             default_radius + ", what the file says for scenes)"},
        {"--round-edges", "convex|concave|both",
         "which edges (default: the file's, else convex); concave ones stay sharp in this version, "
@@ -54,9 +55,8 @@ CommandRow render_row() {
           "the picture: .png .jpg (tone-mapped), .exr .pfm (linear); - writes PNG to stdout"},
          {"--aov", "LIST",
           "more layers, separated by commas: albedo, normal, depth, object, rounded, bevel_fac; "
-          "part of an "
-          ".exr, else "
-          "beside the picture as .NAME.pfm"},
+          "part of "
+          "an .exr, else beside the picture as .NAME.pfm"},
          {"--exposure", "STOPS", "brightness of .png and .jpg (default: the scene's, else 0)"},
          {"--stats", "FILE", "write times, counts and memory as JSON; - for stdout"}}},
        {"Picture",

@@ -76,9 +76,7 @@ void apply_method(RoundingSettings& settings, const Given& given) {
   constexpr RoundMethod kMethods[] = {RoundMethod::exact, RoundMethod::shader, RoundMethod::none};
   const std::vector<std::string> names{"exact", "shader", "none", "mesh:N"};
   if (given.text == "mesh") fail(given, "incomplete; say how many subdivisions, such as mesh:3");
-  const std::size_t choice = parse_choice(given, names);
-  if (choice == std::size(kMethods)) fail(given, "incomplete; put a number for N, such as mesh:3");
-  settings.method = kMethods[choice];
+  settings.method = kMethods[parse_choice(given, names)];  // never the last: mesh:… is done
 }
 
 }  // namespace

@@ -76,22 +76,19 @@ Clearance::Clearance(const WeldedMesh& mesh, const FlatRegions& regions, std::ui
 }
 
 std::vector<std::uint32_t> Clearance::find_in_surface(std::span<const Cut> cuts) {
-  blocked_.assign(cuts.size(), false);
-  const std::vector<std::uint32_t> changed = changed_since(cuts, known_free_);
-  meet_surface(cuts, changed);
-  remember(cuts, changed, known_free_);
-  return blocked_cuts();
+  return find_blocked(cuts, known_free_, &Clearance::meet_surface);
 }
 
 std::vector<std::uint32_t> Clearance::find_overlapping(std::span<const Cut> cuts) {
-  blocked_.assign(cuts.size(), false);
-  const std::vector<std::uint32_t> changed = changed_since(cuts, known_apart_);
-  meet_each_other(cuts, changed);
-  remember(cuts, changed, known_apart_);
-  return blocked_cuts();
+  return find_blocked(cuts, known_apart_, &Clearance::meet_each_other);
 }
 
-std::vector<std::uint32_t> Clearance::blocked_cuts() const {
+std::vector<std::uint32_t> Clearance::find_blocked(std::span<const Cut> cuts, Known& known,
+                                                   Meet meet) {
+  blocked_.assign(cuts.size(), false);
+  const std::vector<std::uint32_t> changed = changed_since(cuts, known);
+  (this->*meet)(cuts, changed);
+  remember(cuts, changed, known);
   std::vector<std::uint32_t> out;
   for (std::uint32_t i = 0; i < blocked_.size(); ++i) {
     if (blocked_[i]) out.push_back(i);

@@ -74,7 +74,8 @@ class Clearance {
 
   void meet_surface(std::span<const Cut> cuts, std::span<const std::uint32_t> changed);
   void meet_each_other(std::span<const Cut> cuts, std::span<const std::uint32_t> changed);
-  [[nodiscard]] std::vector<std::uint32_t> blocked_cuts() const;
+  using Meet = void (Clearance::*)(std::span<const Cut>, std::span<const std::uint32_t> changed);
+  std::vector<std::uint32_t> find_blocked(std::span<const Cut> cuts, Known& known, Meet meet);
   [[nodiscard]] static std::vector<std::uint32_t> changed_since(std::span<const Cut> cuts,
                                                                 const Known& known);
   void remember(std::span<const Cut> cuts, std::span<const std::uint32_t> changed,

@@ -9,6 +9,7 @@
 //            bend: clearance.h judges them as any face that goes on smoothly
 // Tests      tests/rounding/chain_test.cpp
 #include <algorithm>
+#include <unordered_set>
 
 #include "rounding/crease_network.h"
 
@@ -104,10 +105,9 @@ void NetworkBuilder::skip(std::uint32_t first) {
 // Of neighbours that have vanished those go first that would at the smallest radius: the others get longer by it.
 void NetworkBuilder::skip_or_leave_sharp(Refused& refused) {
   std::ranges::sort(vanished_, {}, &Vanished::limit);
-  std::vector<std::uint32_t> waiting;
-  const auto waits = [&](std::uint32_t h) { return std::ranges::count(waiting, h) > 0; };
+  std::unordered_set<std::uint32_t> waiting;
   for (const Vanished& arc : vanished_) {
-    if (waits(arc.first) || waits(arc.back)) continue;
+    if (waiting.contains(arc.first) || waiting.contains(arc.back)) continue;
     if (!can_skip(arc)) {
       refused.shortened.push_back(arc.first);
       continue;
@@ -115,7 +115,7 @@ void NetworkBuilder::skip_or_leave_sharp(Refused& refused) {
     skip(arc.first);
     refused.skips_changed = true;
     for (const std::uint32_t h : {arc.first, arc.back}) {
-      waiting.push_back(ends_[end_of_[h]].mitred[0]);
+      waiting.insert(ends_[end_of_[h]].mitred[0]);
     }
   }
 }
@@ -126,7 +126,7 @@ void NetworkBuilder::leave_broken_runs_sharp(Refused& refused) {
     if (!skipped_[h]) continue;
     skipped_[h] = skipped_[mesh_.twin[h]] = false;
     kinds_[h] = kinds_[mesh_.twin[h]] = EdgeKind::smooth;
-    ++refused.broken_runs;
+    ++refused.no_longer_skipped;
   }
   no_longer_skipped_.clear();
 }
@@ -144,8 +144,8 @@ void NetworkBuilder::add_border_faces(const RingEdge& a, const RingEdge& b) {
     const bool is_between = face != a.face_after && face != a.face_before && face != b.face_after &&
                             face != b.face_before;
     if (i < ring_.size() || !is_between) continue;
-    add_border_face({face, after_a ? a.face_before : a.face_after, v, v, kNone}, a.half_edge);
-    add_border_face({face, after_a ? b.face_after : b.face_before, v, v, kNone}, b.half_edge);
+    borders_.push_back({a.half_edge, {face, after_a ? a.face_before : a.face_after, v, v, kNone}});
+    borders_.push_back({b.half_edge, {face, after_a ? b.face_after : b.face_before, v, v, kNone}});
   }
 }
 
@@ -158,7 +158,8 @@ void NetworkBuilder::add_border_faces_beyond(const RingEdge& a, const RingEdge& 
   const std::uint32_t common = is_of(a.face_after, b) ? a.face_after : a.face_before;
   const auto add = [&](std::uint32_t face, Vec3d v0, Vec3d v1) {
     if (is_of(face, a) || is_of(face, b)) return;
-    for (const RingEdge& e : {a, b}) add_border_face({face, common, v0, v1, kNone}, e.half_edge);
+    for (const RingEdge& e : {a, b})
+      borders_.push_back({e.half_edge, {face, common, v0, v1, kNone}});
   };
   const auto add_corner = [&](std::uint32_t half_edge) {
     collect_ring(half_edge);
@@ -180,10 +181,6 @@ void NetworkBuilder::add_border_faces_beyond(const RingEdge& a, const RingEdge& 
     add_corner(mesh_.twin[h]);
   }
   ++out_.rounded_edges;
-}
-
-void NetworkBuilder::add_border_face(const BorderFace& face, std::uint32_t half_edge) {
-  borders_.push_back({half_edge, face});
 }
 
 // Once the arcs are known.

@@ -52,7 +52,7 @@ ShellNetwork NetworkBuilder::build(std::uint32_t shell, bool convex) {
       return network;
     }
     // Leave those edges sharp and look at their corners again.
-    shortened += refused.shortened.size() + refused.broken_runs;
+    shortened += refused.shortened.size() + refused.no_longer_skipped;
     narrow += refused.narrow.size();
     for (const std::uint32_t first : refused.shortened) leave_sharp(first);
     for (const std::uint32_t first : refused.narrow) leave_sharp(first);

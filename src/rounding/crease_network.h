@@ -96,11 +96,11 @@ class NetworkBuilder {
   // First half-edges of the arcs to be left sharp, and a half-edge of each corner not to get spheres.
   struct Refused {
     std::vector<std::uint32_t> shortened, narrow, corners;
-    std::uint64_t broken_runs = 0;  // edges that were skipped and are to stay sharp now
+    std::uint64_t no_longer_skipped = 0;  // edges that are to stay sharp now
     bool skips_changed = false;
 
     [[nodiscard]] bool any() const {
-      return !shortened.empty() || !narrow.empty() || !corners.empty() || broken_runs > 0 ||
+      return !shortened.empty() || !narrow.empty() || !corners.empty() || no_longer_skipped > 0 ||
              skips_changed;
     }
   };
@@ -140,7 +140,6 @@ class NetworkBuilder {
   void add_border_faces(const RingEdge& a, const RingEdge& b);
   void add_border_faces_beyond(const RingEdge& a, const RingEdge& b,
                                std::span<const std::uint32_t> passed);
-  void add_border_face(const BorderFace& face, std::uint32_t half_edge);
   void append_border_faces();
   void make_spheres();
   void make_arc(std::uint32_t first);

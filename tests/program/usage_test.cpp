@@ -86,8 +86,7 @@ INSTANTIATE_TEST_SUITE_P(
                "--aov: coverage_lo needs the integrator beam"},
         Misuse{"render cube.stl -o a.png --aov albeda",
                "--aov: \"albeda\" is not known; use one of albedo, normal, depth, object, rounded, "
-               "bevel_fac; "
-               "did you mean \"albedo\"?\n"},
+               "bevel_fac; did you mean \"albedo\"?\n"},
         Misuse{"render cube.stl -o a.png --size", "--size takes one value, once: --size WxH\n"},
         Misuse{"render cube.stl -o a.png --size 10", "--size: \"10\" is no size; use WIDTHxHEIGHT"},
         Misuse{"render cube.stl -o a.png --size 0x10", "--size: \"0x10\" is out of range"},

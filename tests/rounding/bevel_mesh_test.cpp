@@ -13,6 +13,7 @@
 #include "support/convex_oracle.h"
 #include "support/convex_solids.h"
 #include "support/mesh_checks.h"
+#include "support/nonconvex_solids.h"
 
 namespace arris {
 namespace {
@@ -35,44 +36,26 @@ Mesh unit_cube() {
   return to_mesh(oracle::box({1, 1, 1}));
 }
 
-// A prism over an outline, counter-clockwise, with its lids cut by hand.
-Mesh prism_over(const std::vector<Vec2f>& outline, const std::vector<Triangle>& lid, float height) {
+Mesh prism_over(const oracle::Outline& outline) {
+  oracle::TriangleSoup prism = oracle::prism_over("prism", outline, {});
   Mesh mesh;
-  mesh.name = "prism";
-  const auto n = std::uint32_t(outline.size());
-  for (const float z : {0.0F, height}) {
-    for (const Vec2f& p : outline) mesh.positions.push_back({p.x, p.y, z});
-  }
-  for (const Triangle& t : lid) {
-    mesh.triangles.push_back({t[0], t[2], t[1]});
-    mesh.triangles.push_back({t[0] + n, t[1] + n, t[2] + n});
-  }
-  for (std::uint32_t i = 0; i < n; ++i) {
-    const std::uint32_t j = (i + 1) % n;
-    mesh.triangles.push_back({i, j, j + n});
-    mesh.triangles.push_back({i, j + n, i + n});
-  }
+  mesh.name = std::move(prism.name);
+  mesh.positions = std::move(prism.positions);
+  mesh.triangles = std::move(prism.triangles);
   return mesh;
 }
 
 Mesh l_prism() {
-  return prism_over({{0, 0}, {2, 0}, {2, 1}, {1, 1}, {1, 2}, {0, 2}},
-                    {{0, 1, 2}, {0, 2, 3}, {0, 3, 5}, {3, 4, 5}}, 1);
-}
-
-std::vector<Vec2f> circle(int sides, float radius) {
-  std::vector<Vec2f> points;
-  for (int i = 0; i < sides; ++i) {
-    const double a = 2 * kPi * i / sides;
-    points.push_back({radius * float(std::cos(a)), radius * float(std::sin(a))});
-  }
-  return points;
+  return prism_over({{0, 0}, {2, 0}, {2, 1}, {1, 1}, {1, 2}, {0, 2}});
 }
 
 Mesh cylinder(int sides) {
-  std::vector<Triangle> lid;
-  for (std::uint32_t i = 1; i + 1 < std::uint32_t(sides); ++i) lid.push_back({0, i, i + 1});
-  return prism_over(circle(sides, 1), lid, 1);
+  oracle::Outline circle;
+  for (int i = 0; i < sides; ++i) {
+    const double a = 2 * kPi * i / sides;
+    circle.push_back({std::cos(a), std::sin(a)});
+  }
+  return prism_over(circle);
 }
 
 // As the knob of a toy brick: no lid below.
@@ -117,7 +100,7 @@ Mesh box_on_plate() {
 // A prism with a slanted lid whose edges turn by more than 30° at some and less at others, so that rounded
 // edges run into sharp ones.
 Mesh wedge() {
-  Mesh mesh = prism_over({{0, 0}, {2, 0}, {2, 1}, {0, 1}}, {{0, 1, 2}, {0, 2, 3}}, 1);
+  Mesh mesh = prism_over({{0, 0}, {2, 0}, {2, 1}, {0, 1}});
   for (const std::uint32_t i : {5U, 6U}) mesh.positions[i].z = 0.05F;
   return mesh;
 }
