@@ -16,7 +16,13 @@ for model in "$out"/models/*; do
   cmp "$model" "examples/models/$(basename "$model")"
 done
 
-for input in examples/models/*.{stl,obj} examples/scenes/*.toml; do
+inputs=(examples/models/*.{stl,obj} examples/scenes/*.toml examples/csg/*.csg)
+if command -v openscad >/dev/null; then
+  inputs+=(examples/csg/*.scad)
+else
+  echo "examples/csg/*.scad are left out: openscad is not installed"
+fi
+for input in "${inputs[@]}"; do
   echo "$input"
   "$arris" info "$input" >"$out/info.txt"
   "$arris" render "$input" -o "$out/$(basename "$input").png" --size 160x90 --spp 2 --quiet

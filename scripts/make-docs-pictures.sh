@@ -20,5 +20,6 @@ render examples/models/keypad.obj keypad.jpg --size 1280x720
 render examples/models/keypad.obj keypad_sharp.jpg --size 1280x720 --round none
 render examples/models/dice.stl dice.jpg --size 960x540
 render examples/models/arch.obj arch.jpg --size 960x540 --lighting sky
+render examples/csg/bearing_block.csg bearing_block.jpg --size 960x540
 render examples/scenes/bevel_shader.toml bevel_shader.jpg
 render examples/scenes/cornell_box.toml cornell_box.jpg

@@ -26,6 +26,15 @@ OptionGroup rounding_group(const std::string& default_radius) {
         "subdivisions (default: the file's, else exact)"}}};
 }
 
+OptionGroup input_group() {
+  return {
+      "Input",
+      {{"--facets", "exact|as-written",
+        "round things in OpenSCAD files; exact: true spheres, cylinders and circles, but for those "
+        "with an explicit $fn of 12 or less; as-written: with OpenSCAD's facets (default: "
+        "exact)"}}};
+}
+
 OptionGroup camera_group() {
   return {"Camera (without one the model is framed in a three-quarter view)",
           {{"--camera-position", "X,Y,Z", "where the camera is"},
@@ -42,10 +51,9 @@ CommandRow render_row() {
       1,
       1,
       "make a picture of a model or scene",
-      "A bare model (STL, OBJ, PLY, OFF, glTF) is staged: framed, put on a soft ground, lit as in "
-      "a studio, its "
-      "edges rounded. A scene file (.toml) is rendered as it says. INPUT may be - for stdin: its "
-      "format is told by its content. Ctrl-C ends the render early "
+      "A bare model (STL, OBJ, PLY, OFF, glTF, OpenSCAD) is staged: framed, put on a soft ground, "
+      "lit as in a studio, its edges rounded. A scene file (.toml) is rendered as it says. INPUT "
+      "may be - for stdin: its format is told by its content. Ctrl-C ends the render early "
       "and keeps "
       "the picture of the samples made so far, if there are any (exit code 1); a second Ctrl-C "
       "ends "
@@ -70,6 +78,7 @@ CommandRow render_row() {
           "only these samples of the sequence; arris merge joins such .exr parts, which hold their "
           "exact sums besides, to the bytes of the whole"},
          {"--integrator", "path", "how light is computed (default: path)"}}},
+       input_group(),
        camera_group(),
        {"Staging",
         {{"--lighting", "studio|sky|white",
@@ -107,7 +116,8 @@ CommandRow info_row() {
           "Prints for each object its triangles, its edges by kind, whether it is closed and "
           "convex, and what "
           "rounding would do with it. INPUT may be - for stdin.",
-          {rounding_group("auto for bare models"),
+          {input_group(),
+           rounding_group("auto for bare models"),
            {"Output",
             {{"--json", "", "as JSON, with all digits"},
              {"--threads", "N", "default: all"},
@@ -134,6 +144,7 @@ CommandRow shoot_row() {
       "and corners are met in single precision, about seven digits of the scene's size. INPUT may "
       "be - for stdin.",
       {{"Rays", {{"--rays", "FILE", "file of rays; - reads stdin (required)"}}},
+       input_group(),
        rounding_group("none for bare models"),
        {"Running",
         {{"--threads", "N", "default: all"},

@@ -44,13 +44,22 @@ nlohmann::ordered_json to_json(const RoundingSummary& r) {
 }
 
 nlohmann::ordered_json to_json(const ObjectReport& o, const RoundingSummary* rounding) {
-  nlohmann::ordered_json json{
-      {"name", o.name},     {"triangles", o.triangles},  {"vertices", o.vertices},
-      {"shells", o.shells}, {"edges", to_json(o.edges)}, {"closed", o.closed},
-      {"convex", o.convex}};
-  json["inradius"] = o.inradius ? nlohmann::ordered_json(*o.inradius) : nullptr;
+  nlohmann::ordered_json json{{"name", o.name}};
+  if (o.csg) {
+    json["csg"] = {{"primitives", o.csg->primitives},
+                   {"operations", o.csg->operations},
+                   {"depth", o.csg->depth}};
+  } else {
+    json.update({{"triangles", o.triangles},
+                 {"vertices", o.vertices},
+                 {"shells", o.shells},
+                 {"edges", to_json(o.edges)},
+                 {"closed", o.closed},
+                 {"convex", o.convex}});
+    json["inradius"] = o.inradius ? nlohmann::ordered_json(*o.inradius) : nullptr;
+  }
   json["bounds"] = {{"min", to_json(o.bounds_min)}, {"max", to_json(o.bounds_max)}};
-  json["degenerate_triangles"] = o.degenerate_triangles;
+  if (!o.csg) json["degenerate_triangles"] = o.degenerate_triangles;
   json["rounding"] = rounding != nullptr ? to_json(*rounding) : nlohmann::ordered_json(nullptr);
   return json;
 }
@@ -75,9 +84,18 @@ std::string format_bounds(Vec3d lower, Vec3d upper) {
       size.y, size.z, lower.x, lower.y, lower.z, upper.x, upper.y, upper.z);
 }
 
-void print_object(const ObjectReport& object, const RoundingSummary* rounding) {
+std::string count(std::uint64_t number, const char* what) {
+  return fmt::format("{} {}{}", number, what, number == 1 ? "" : "s");
+}
+
+void print_csg(const ObjectReport& object) {
+  fmt::print("  solid       {} in {}, {} deep; exact surfaces\n",
+             count(object.csg->primitives, "primitive"), count(object.csg->operations, "operation"),
+             object.csg->depth);
+}
+
+void print_mesh(const ObjectReport& object) {
   const EdgeCounts& e = object.edges;
-  fmt::print("\n{}\n", object.name.empty() ? "(no name)" : object.name);
   fmt::print("  triangles   {} on {} vertices, in {} {}\n", object.triangles, object.vertices,
              object.shells, object.shells == 1 ? "piece" : "pieces");
   if (object.degenerate_triangles > 0) {
@@ -91,7 +109,13 @@ void print_object(const ObjectReport& object, const RoundingSummary* rounding) {
   fmt::print("\n  shape       {}, {}", object.closed ? "closed" : "not closed",
              object.convex ? "convex" : "not convex");
   if (object.inradius) fmt::print(", inradius {:.6g}", *object.inradius);
-  fmt::print("\n  size        {}\n", format_bounds(object.bounds_min, object.bounds_max));
+  fmt::print("\n");
+}
+
+void print_object(const ObjectReport& object, const RoundingSummary* rounding) {
+  fmt::print("\n{}\n", object.name.empty() ? "(no name)" : object.name);
+  object.csg ? print_csg(object) : print_mesh(object);
+  fmt::print("  size        {}\n", format_bounds(object.bounds_min, object.bounds_max));
   if (rounding == nullptr || rounding->radius == 0) {
     fmt::print("  rounding    none\n");
   } else {
@@ -102,11 +126,20 @@ void print_object(const ObjectReport& object, const RoundingSummary* rounding) {
   for (const RoundingNote& note : rounding->notes) fmt::print("              {}\n", note.text());
 }
 
+// "12 triangles and 3 primitives": what there is of them.
+std::string count_parts(const SceneReport& scene) {
+  std::uint64_t primitives = 0;
+  for (const ObjectReport& object : scene.objects) {
+    primitives += object.csg ? object.csg->primitives : 0;
+  }
+  if (primitives == 0) return count(scene.triangles, "triangle");
+  const std::string solids = count(primitives, "primitive");
+  return scene.triangles == 0 ? solids : count(scene.triangles, "triangle") + " and " + solids;
+}
+
 void print_report(const Findings& findings, const std::string& input) {
   const SceneReport& scene = findings.scene;
-  fmt::print("{}: {} {} in {} {}\n", input, scene.triangles,
-             scene.triangles == 1 ? "triangle" : "triangles", scene.objects.size(),
-             scene.objects.size() == 1 ? "object" : "objects");
+  fmt::print("{}: {} in {}\n", input, count_parts(scene), count(scene.objects.size(), "object"));
   fmt::print("size {}\n", format_bounds(scene.bounds_min, scene.bounds_max));
   for (std::size_t i = 0; i < scene.objects.size(); ++i) {
     print_object(scene.objects[i], find_summary(findings, i));
@@ -119,7 +152,7 @@ int run_info(const Arguments& arguments) {
   const std::string& input = arguments.positionals[0];
   const int threads = threads_of(arguments);
   with_rounding_options({}, arguments);  // bad values before long loading
-  Input loaded = load_input(input);
+  Input loaded = load_input(input, load_options_of(arguments));
   Scene& scene = loaded.scene;
   check_scene(scene, loaded.name);
   Console console(arguments);

@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "arris/error.h"
-#include "arris/io.h"
 #include "io/file_kind.h"
 #include "io/scene_bytes.h"
 
@@ -25,13 +24,13 @@ std::vector<std::uint8_t> read_stdin() {
 
 }  // namespace
 
-Input load_input(const std::string& name) {
+Input load_input(const std::string& name, const LoadOptions& options) {
   if (name != "-") {
-    return {name, load_scene(name), is_scene_file(name)};
+    return {name, load_scene(name, options), is_scene_file(name)};
   }
   const std::vector<std::uint8_t> bytes = read_stdin();
   const std::string extension = find_scene_extension(bytes, "stdin");
-  return {"stdin", read_scene(bytes, extension, "stdin"), extension == ".toml"};
+  return {"stdin", read_scene(bytes, extension, "stdin", options), extension == ".toml"};
 }
 
 }  // namespace arris::program

@@ -3,6 +3,7 @@
 
 #include <string>
 
+#include "arris/io.h"
 #include "arris/scene.h"
 
 namespace arris::program {
@@ -14,6 +15,6 @@ struct Input {
 };
 
 // "-": stdin, in a format told by its content.
-Input load_input(const std::string& name);
+Input load_input(const std::string& name, const LoadOptions& options);
 
 }  // namespace arris::program

@@ -88,8 +88,11 @@ RenderJob make_job(const RenderRequest& request, const Scene& scene) {
 void report_scene(Console& console, const Scene& scene, const PrepareStats& stats) {
   for (const std::string& note : scene.notes) console.report(note);
   report_rounding(console, scene, stats);
-  console.detail(fmt::format("{} {} in {} {}, prepared in {}", stats.triangles,
-                             stats.triangles == 1 ? "triangle" : "triangles", stats.objects,
+  const std::string triangles = stats.triangles == 0
+                                    ? ""  // CSG solids only
+                                    : fmt::format("{} {} in ", stats.triangles,
+                                                  stats.triangles == 1 ? "triangle" : "triangles");
+  console.detail(fmt::format("{}{} {}, prepared in {}", triangles, stats.objects,
                              stats.objects == 1 ? "object" : "objects",
                              format_duration(stats.build_seconds + stats.round_seconds)));
   const Camera& camera = *scene.camera;
@@ -122,7 +125,7 @@ int run_render(const Arguments& arguments) {
   RenderStats stats;
 
   const Stopwatch load;
-  Input loaded = load_input(request.input);
+  Input loaded = load_input(request.input, request.load);
   check_scene(loaded.scene, loaded.name);  // before staging adds what is not the file's
   if (loaded.is_scene_file) request.stage.source = StageOptions::Source::scene_file;
   const StagingReport staging = apply_request(loaded.scene, request, arguments);

@@ -139,6 +139,7 @@ void check_files(const RenderRequest& request) {
 RenderRequest make_render_request(const Arguments& arguments) {
   RenderRequest request;
   request.input = arguments.positionals[0];
+  request.load = load_options_of(arguments);
   request.output = parse_output(arguments);
   check_integrator(arguments);
   request.aovs = parse_aovs(arguments);

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "arris/command_line.h"
+#include "arris/io.h"
 #include "arris/render.h"
 #include "arris/scene.h"
 #include "render/staging.h"
@@ -14,7 +15,8 @@
 namespace arris::program {
 
 struct RenderRequest {
-  std::string input;   // "-": stdin
+  std::string input;  // "-": stdin
+  LoadOptions load;
   std::string output;  // "-": PNG to stdout
   std::optional<std::string> stats;
   std::optional<std::filesystem::path> checkpoint;

@@ -97,6 +97,7 @@ int run_shoot(const Arguments& arguments) {
   }
   const int threads = threads_of(arguments);
   with_rounding_options({}, arguments);
+  const LoadOptions load_options = load_options_of(arguments);
   std::ifstream file;
   if (*rays != "-") {
     file.open(*rays);
@@ -109,7 +110,7 @@ int run_shoot(const Arguments& arguments) {
     throw Error(Error::Kind::input, "--rays",
                 "and INPUT can't both be read from stdin; name a file for one of them");
   }
-  Input loaded = load_input(input);
+  Input loaded = load_input(input, load_options);
   check_scene(loaded.scene, loaded.name);
   apply_rounding_options(loaded.scene, arguments);
   const auto prepared = prepare_scene(std::move(loaded.scene), {.threads = threads});

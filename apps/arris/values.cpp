@@ -160,6 +160,16 @@ std::size_t parse_choice(const Given& given, const std::vector<std::string>& nam
                           did_you_mean(given.text, names)));
 }
 
+LoadOptions load_options_of(const Arguments& arguments) {
+  LoadOptions options;
+  if (const auto given = find_given(arguments, "--facets")) {
+    options.facets = parse_choice(*given, {"exact", "as-written"}) == 0
+                         ? LoadOptions::Facets::exact
+                         : LoadOptions::Facets::as_written;
+  }
+  return options;
+}
+
 int threads_of(const Arguments& arguments) {
   constexpr std::uint64_t kMostThreads = 1024;
   const auto given = find_given(arguments, "--threads");

@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include "arris/io.h"
 #include "arris/math.h"
 #include "arris/render.h"
 #include "arris/scene.h"
@@ -43,6 +44,7 @@ std::size_t parse_choice(const Given& given, const std::vector<std::string>& nam
 
 // Options that apply to render, info and shoot alike.
 int threads_of(const Arguments& arguments);
+LoadOptions load_options_of(const Arguments& arguments);
 
 // What the --round options change in settings that a file or the command's default makes; nothing if
 // none is given.

@@ -15,8 +15,14 @@
 
 namespace arris {
 
-// By extension: .stl .obj .ply .off .gltf .glb .toml. Throws Error.
-Scene load_scene(const std::filesystem::path& path);
+struct LoadOptions {
+  // Round things of OpenSCAD files. exact: true spheres, cylinders and circles, but for those with a small
+  // explicit $fn, such as a hexagon; as_written: with OpenSCAD's facets.
+  enum class Facets { exact, as_written } facets = Facets::exact;
+};
+
+// By extension: .stl .obj .ply .off .gltf .glb .csg .scad .toml. Throws Error.
+Scene load_scene(const std::filesystem::path& path, const LoadOptions& options = {});
 
 // The extensions that load_scene() takes, with the dot.
 std::vector<std::string> scene_extensions();

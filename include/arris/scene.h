@@ -14,20 +14,11 @@
 #include <variant>
 #include <vector>
 
+#include "arris/csg.h"
+#include "arris/ids.h"
 #include "arris/math.h"
 
 namespace arris {
-
-// Index into one of the scene's arrays; the tag keeps the arrays apart.
-template <class Tag>
-struct Id {
-  std::uint32_t index = 0;
-  friend constexpr auto operator<=>(Id, Id) = default;
-};
-using MeshId = Id<struct MeshTag>;
-using MaterialId = Id<struct MaterialTag>;
-using TextureId = Id<struct TextureTag>;
-using ObjectId = Id<struct ObjectTag>;
 
 // Triangles in object space. Positions need not be welded: preparation welds them into solids.
 struct Mesh {
@@ -111,6 +102,7 @@ struct RoundingSettings {
 struct Object {
   std::string name;
   MeshId mesh;
+  std::optional<CsgId> csg;  // set: the object is this solid, and `mesh` says nothing
   MaterialId material;
   Affine3d world_from_object;
   std::optional<RoundingSettings> rounding;  // empty: the scene's default
@@ -194,6 +186,7 @@ struct ImageSettings {
 struct Scene {
   std::string name;
   std::vector<Mesh> meshes;
+  std::vector<CsgTree> csg_trees;
   std::vector<Material> materials;  // never empty after load
   std::vector<Texture> textures;
   std::vector<Object> objects;

@@ -3,6 +3,7 @@
 #include <span>
 
 #include "arris/inspect.h"
+#include "csg/csg_bounds.h"
 #include "edges/flat_regions.h"
 #include "edges/inscribed_ball.h"
 
@@ -46,7 +47,28 @@ std::vector<bool> count_edges(const WeldedMesh& welded, const FlatRegions& regio
   return convex;
 }
 
+// The bounds are those of the tree's own box, turned.
+ObjectReport inspect_csg(const Scene& scene, const Object& object) {
+  const CsgTree& tree = scene.csg_trees[object.csg->index];
+  const CsgCounts counts = count_csg(tree);
+  ObjectReport report;
+  report.name = object.name;
+  report.csg = CsgReport{counts.primitives, counts.operations, counts.depth};
+  report.closed = true;
+  report.bounds_min = Vec3d(kInfinity);
+  report.bounds_max = Vec3d(-kInfinity);
+  const Box3d box = csg_bounds(tree);
+  if (box.is_empty()) return report;
+  for (const Vec3d& corner : corners_of(box)) {
+    const Vec3d world = transform_point(object.world_from_object, corner);
+    report.bounds_min = min(report.bounds_min, world);
+    report.bounds_max = max(report.bounds_max, world);
+  }
+  return report;
+}
+
 ObjectReport inspect_object(const Scene& scene, const Object& object, double min_angle) {
+  if (object.csg) return inspect_csg(scene, object);
   const Mesh& mesh = scene.meshes[object.mesh.index];
   std::vector<Vec3f> positions;
   positions.reserve(mesh.positions.size());

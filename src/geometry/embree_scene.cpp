@@ -15,10 +15,20 @@
 
 namespace arris {
 
+namespace {
+
+// The callbacks of Embree's threads see what was written before the build.
+struct BoxUser : BoxGeometry {
+  HappensBefore written;
+};
+
+}  // namespace
+
 struct EmbreeScene::Device {
   RTCDevice handle = nullptr;
   RTCScene top = nullptr;
   std::vector<RTCScene> mesh_scenes;  // per mesh; null where the mesh is not instanced
+  std::vector<BoxUser> box_users;     // the addresses stay
   std::atomic<std::int64_t> bytes{0};
   HappensBefore created, counted;  // Embree's threads call back
 
@@ -126,11 +136,38 @@ unsigned attach_instance(RTCDevice device, RTCScene scene, RTCScene instanced, c
   return id;
 }
 
+void box_bounds(const RTCBoundsFunctionArguments* args) {
+  auto* user = static_cast<BoxUser*>(static_cast<BoxGeometry*>(args->geometryUserPtr));
+  user->written.acquire();
+  const Box3f& box = user->boxes[args->primID];
+  RTCBounds* bounds = args->bounds_o;
+  bounds->lower_x = box.lower.x;
+  bounds->lower_y = box.lower.y;
+  bounds->lower_z = box.lower.z;
+  bounds->upper_x = box.upper.x;
+  bounds->upper_y = box.upper.y;
+  bounds->upper_z = box.upper.z;
+}
+
+unsigned attach_boxes(RTCDevice device, RTCScene scene, BoxUser& boxes) {
+  RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_USER);
+  rtcSetGeometryUserPrimitiveCount(geometry, unsigned(boxes.boxes.size()));
+  rtcSetGeometryUserData(geometry, static_cast<BoxGeometry*>(&boxes));
+  rtcSetGeometryBoundsFunction(geometry, box_bounds, nullptr);
+  rtcSetGeometryIntersectFunction(geometry, boxes.intersect);
+  rtcSetGeometryOccludedFunction(geometry, boxes.occluded);
+  rtcCommitGeometry(geometry);
+  const unsigned id = rtcAttachGeometry(scene, geometry);
+  rtcReleaseGeometry(geometry);
+  return id;
+}
+
 // Which meshes become instances: those whose copies cost most, until the rest fits the bound.
 std::vector<bool> choose_instanced(const Scene& scene, std::uint64_t max_copied_triangles) {
   std::vector<std::uint64_t> copied(scene.meshes.size());
   std::vector<bool> used(scene.meshes.size());
   for (const Object& object : scene.objects) {
+    if (object.csg) continue;
     const std::uint32_t mesh = object.mesh.index;
     copied[mesh] += used[mesh] ? scene.meshes[mesh].triangles.size() : 0;
     used[mesh] = true;
@@ -186,9 +223,22 @@ GeometryRecord make_record(const Scene& scene, ObjectId id) {
   return record;
 }
 
+GeometryRecord make_box_record(const Scene& scene, const BoxGeometry& boxes) {
+  float coordinate = 0;
+  for (const Box3f& box : boxes.boxes) {
+    coordinate = std::max({coordinate, max_component(box.upper), max_component(-box.lower)});
+  }
+  GeometryRecord record;
+  record.object = boxes.object;
+  record.material = scene.objects[boxes.object.index].material;
+  record.position_error = kRoundings * std::numeric_limits<float>::epsilon() / 2 * coordinate;
+  return record;
+}
+
 }  // namespace
 
-EmbreeScene::EmbreeScene(const Scene& scene, const EmbreeSceneOptions& options)
+EmbreeScene::EmbreeScene(const Scene& scene, const EmbreeSceneOptions& options,
+                         std::vector<BoxGeometry> boxes)
     : device_(std::make_unique<Device>(options.threads)) {
   const std::vector<bool> instanced = choose_instanced(scene, options.max_copied_triangles);
   device_->mesh_scenes.resize(scene.meshes.size());
@@ -198,10 +248,10 @@ EmbreeScene::EmbreeScene(const Scene& scene, const EmbreeSceneOptions& options)
   records_.reserve(scene.objects.size());
   for (std::uint32_t i = 0; i < scene.objects.size(); ++i) {
     const Object& object = scene.objects[i];
-    const Mesh& mesh = scene.meshes[object.mesh.index];
-    if (mesh.triangles.empty()) {
+    if (object.csg || scene.meshes[object.mesh.index].triangles.empty()) {
       continue;
     }
+    const Mesh& mesh = scene.meshes[object.mesh.index];
     GeometryRecord record = make_record(scene, ObjectId{i});
     record.instanced = instanced[object.mesh.index];
     double coordinate = 0;
@@ -227,6 +277,16 @@ EmbreeScene::EmbreeScene(const Scene& scene, const EmbreeSceneOptions& options)
         float(kRoundings * std::numeric_limits<float>::epsilon() / 2 * coordinate);
     records_.resize(std::max<std::size_t>(records_.size(), id + 1));
     records_[id] = record;
+  }
+  device_->box_users.resize(boxes.size());
+  for (std::size_t i = 0; i < boxes.size(); ++i) {
+    BoxUser& user = device_->box_users[i];
+    static_cast<BoxGeometry&>(user) = std::move(boxes[i]);
+    user.written.release();
+    const unsigned id = attach_boxes(device_->handle, top, user);
+    box_records_.push_back(id);
+    records_.resize(std::max<std::size_t>(records_.size(), id + 1));
+    records_[id] = make_box_record(scene, user);
   }
   commit(device_->handle, top);
 }

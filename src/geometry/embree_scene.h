@@ -7,7 +7,8 @@
 // Limits     float coordinates: a scene far from its origin loses precision in proportion
 // Errors     Error::failed when memory runs out
 // Cost       build linear in the triangles (times log), parallel; const afterwards
-// Embree     its headers are included by embree_scene.cpp and render/embree_hit.h, nowhere else
+// Embree     its headers are included by embree_scene.cpp and render/embree_hit.h and render/csg_objects.cpp,
+//            nowhere else
 #pragma once
 
 #include <cstdint>
@@ -17,6 +18,8 @@
 #include "arris/scene.h"
 
 struct RTCSceneTy;
+struct RTCIntersectFunctionNArguments;
+struct RTCOccludedFunctionNArguments;
 
 namespace arris {
 
@@ -29,9 +32,9 @@ inline Vec3f operator*(const Mat3f& m, Vec3f v) {
 
 // What a hit on one geometry is evaluated from. Pointers go into the scene's meshes or the baked copy.
 struct GeometryRecord {
-  const Triangle* triangles = nullptr;
-  const Vec3f* positions = nullptr;  // world space if baked, object space if instanced
-  const Vec3f* normals = nullptr;    // object space; null: flat
+  const Triangle* triangles = nullptr;  // null: no mesh
+  const Vec3f* positions = nullptr;     // world space if baked, object space if instanced
+  const Vec3f* normals = nullptr;       // object space; null: flat
   const Vec2f* uvs = nullptr;
   const MaterialId* triangle_materials = nullptr;  // null: `material`
   ObjectId object;
@@ -45,6 +48,20 @@ struct GeometryRecord {
   Mat3f normal_from_object;  // inverse transpose, for shading normals; not unit length
 };
 
+struct Box3f {
+  Vec3f lower, upper;
+};
+
+// A geometry of boxes: rays that may meet one are handed to the callbacks, whose geometryUserPtr is the
+// BoxGeometry: in `user` they find what is in the box. Its record has no triangles.
+struct BoxGeometry {
+  ObjectId object;
+  std::vector<Box3f> boxes;  // world space
+  const void* user = nullptr;
+  void (*intersect)(const RTCIntersectFunctionNArguments*) = nullptr;
+  void (*occluded)(const RTCOccludedFunctionNArguments*) = nullptr;
+};
+
 struct EmbreeSceneOptions {
   int threads = 0;  // 0: all
   // Baking shared meshes may add this many triangles; the biggest savings are instanced beyond.
@@ -53,8 +70,9 @@ struct EmbreeSceneOptions {
 
 class EmbreeScene {
  public:
-  // Keeps pointers into `scene`, which must outlive it and not move.
-  explicit EmbreeScene(const Scene& scene, const EmbreeSceneOptions& options = {});
+  // Keeps pointers into `scene`, which must outlive it and not move. Objects that are no meshes come as boxes.
+  explicit EmbreeScene(const Scene& scene, const EmbreeSceneOptions& options = {},
+                       std::vector<BoxGeometry> boxes = {});
   EmbreeScene(const EmbreeScene&) = delete;
   EmbreeScene& operator=(const EmbreeScene&) = delete;
   ~EmbreeScene();
@@ -62,6 +80,8 @@ class EmbreeScene {
   [[nodiscard]] RTCSceneTy* handle() const { return handle_; }
   // Index: what GeometryRecord an Embree hit belongs to, see render/trace.cpp.
   [[nodiscard]] const std::vector<GeometryRecord>& records() const { return records_; }
+  // The index of records() of each of the boxes given.
+  [[nodiscard]] const std::vector<std::uint32_t>& box_records() const { return box_records_; }
   [[nodiscard]] std::uint64_t bytes() const;  // BVH and baked copies
 
  private:
@@ -69,6 +89,7 @@ class EmbreeScene {
   std::unique_ptr<Device> device_;
   RTCSceneTy* handle_ = nullptr;
   std::vector<GeometryRecord> records_;
+  std::vector<std::uint32_t> box_records_;
 };
 
 }  // namespace arris

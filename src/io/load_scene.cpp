@@ -9,6 +9,7 @@
 #include "arris/io.h"
 #include "base/nearest_name.h"
 #include "base/utf8_text.h"
+#include "io/csg_reader.h"
 #include "io/file_bytes.h"
 #include "io/file_kind.h"
 #include "io/gltf_buffers.h"
@@ -24,6 +25,7 @@ namespace fs = std::filesystem;
 
 struct SceneFile {
   const fs::path& path;
+  const LoadOptions& options;
   std::string name;  // the path as text, for errors
   std::span<const std::uint8_t> bytes;
 };
@@ -47,10 +49,17 @@ constexpr Format kFormats[] = {
      [](const SceneFile& f) { return read_gltf(f.bytes, f.name, f.path.parent_path()); }, is_glb},
     {".gltf", "glTF",
      [](const SceneFile& f) { return read_gltf(f.bytes, f.name, f.path.parent_path()); }, nullptr},
+    {".csg", "CSG",
+     [](const SceneFile& f) {
+       return read_csg(f.bytes, f.name, csg_files_beside(f.path), f.options);
+     },
+     nullptr},
+    {".scad", "OpenSCAD", [](const SceneFile& f) { return read_scad(f.path, f.options); }, nullptr},
     {".toml", "TOML",
      [](const SceneFile& f) {
        const std::string_view text(reinterpret_cast<const char*>(f.bytes.data()), f.bytes.size());
-       return read_toml_scene(text, f.name, f.path.parent_path(), load_scene);
+       return read_toml_scene(text, f.name, f.path.parent_path(),
+                              [&](const fs::path& path) { return load_scene(path, f.options); });
      },
      nullptr},
 };
@@ -68,10 +77,21 @@ std::string_view first_line(std::string_view text) {
     const std::size_t end = std::min(text.find_first_of("\r\n"), text.size());
     std::string_view line = text.substr(0, end);
     line.remove_prefix(std::min(line.find_first_not_of(" \t"), line.size()));
-    if (!line.empty() && line[0] != '#') return line;
+    if (!line.empty() && line[0] != '#' && !line.starts_with("//")) return line;
     text.remove_prefix(std::min(end + 1, text.size()));
   }
   return {};
+}
+
+// As "group() {" of an OpenSCAD tree.
+bool starts_with_call(std::string_view line) {
+  if (line.starts_with('%')) line.remove_prefix(1);
+  const std::size_t end = std::min(
+      line.find_first_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_"),
+      line.size());
+  line.remove_prefix(end);
+  line.remove_prefix(std::min(line.find_first_not_of(' '), line.size()));
+  return end > 0 && line.starts_with('(');
 }
 
 std::string_view find_text_extension(std::string_view text) {
@@ -82,6 +102,7 @@ std::string_view find_text_extension(std::string_view text) {
   for (const std::string_view keyword : {"v", "vt", "vn", "f", "o", "g", "s", "usemtl", "mtllib"}) {
     if (word == keyword) return ".obj";  // none is a key of scene files
   }
+  if (starts_with_call(line)) return ".csg";
   return line.find('=') == std::string_view::npos ? "" : ".toml";
 }
 
@@ -120,10 +141,10 @@ std::vector<std::string> scene_extensions() {
   return extensions;
 }
 
-Scene load_scene(const fs::path& path) {
+Scene load_scene(const fs::path& path, const LoadOptions& options) {
   const Format& format = format_of(path);
   const std::vector<std::uint8_t> bytes = read_file_bytes(path);
-  const SceneFile file{path, path.string(), bytes};
+  const SceneFile file{path, options, path.string(), bytes};
   if (bytes.empty()) throw Error(Error::Kind::input, file.name, "is empty; a model is needed");
   check_content(format, file);
   return format.read(file);
@@ -146,9 +167,9 @@ std::string find_scene_extension(std::span<const std::uint8_t> bytes, const std:
 }
 
 Scene read_scene(std::span<const std::uint8_t> bytes, const std::string& extension,
-                 const std::string& name) {
+                 const std::string& name, const LoadOptions& options) {
   const fs::path path(name);
-  return format_of(fs::path(name + extension)).read({path, name, bytes});
+  return format_of(fs::path(name + extension)).read({path, options, name, bytes});
 }
 
 }  // namespace arris

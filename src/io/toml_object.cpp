@@ -188,7 +188,11 @@ void TomlObjects::add_file(TomlTableReader& reader, const Placement& placement) 
     }
     if (placement.material) {
       object.material = *placement.material;
-      object.mesh = without_materials(object.mesh);
+      if (object.csg) {
+        object.csg = with_material(*object.csg, *placement.material);
+      } else {
+        object.mesh = without_materials(object.mesh);
+      }
     }
     if (placement.rounding) object.rounding = placement.rounding;
     object.world_from_object = placement.world_from_object * object.world_from_object;
@@ -226,8 +230,15 @@ TomlObjects::Model TomlObjects::append(Scene model, const std::filesystem::path&
   for (Mesh& mesh : model.meshes) {
     for (MaterialId& material : mesh.triangle_materials) shift(material, materials);
   }
+  for (CsgTree& tree : model.csg_trees) {
+    for (CsgLeaf& leaf : tree.leaves) shift(leaf.material, materials);
+  }
   for (Object& object : model.objects) {
-    shift(object.mesh, meshes);
+    if (object.csg) {
+      shift(*object.csg, scene.csg_trees.size());
+    } else {
+      shift(object.mesh, meshes);
+    }
     shift(object.material, materials);
     if (!object.rounding) object.rounding = model.rounding;
   }
@@ -238,9 +249,23 @@ TomlObjects::Model TomlObjects::append(Scene model, const std::filesystem::path&
     scene.notes.push_back(path.filename().string() + ": its lights and cameras are left out");
   }
   move_onto(model.meshes, scene.meshes);
+  move_onto(model.csg_trees, scene.csg_trees);
   move_onto(model.materials, scene.materials);
   move_onto(model.textures, scene.textures);
   return {std::move(model.objects), name_from_file(path.string())};
+}
+
+// An object's own material goes before those of its primitives.
+CsgId TomlObjects::with_material(CsgId id, MaterialId material) {
+  Scene& scene = context_.scene;
+  const auto [entry, is_new] = plain_trees_.try_emplace(
+      std::pair(id.index, material.index), CsgId{std::uint32_t(scene.csg_trees.size())});
+  if (is_new) {
+    CsgTree copy = scene.csg_trees[id.index];
+    for (CsgLeaf& leaf : copy.leaves) leaf.material = material;
+    scene.csg_trees.push_back(std::move(copy));
+  }
+  return entry->second;
 }
 
 // An object's own material goes before those of its triangles: it needs a mesh without them.

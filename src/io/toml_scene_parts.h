@@ -6,6 +6,7 @@
 #include <optional>
 #include <string>
 #include <tuple>
+#include <utility>
 #include <vector>
 
 #include "io/toml_document.h"
@@ -87,6 +88,7 @@ class TomlObjects {
   const Model* find_or_load(const std::string& file, TomlTableReader& reader);
   Model append(Scene model, const std::filesystem::path& path);
   MeshId without_materials(MeshId id);
+  CsgId with_material(CsgId id, MaterialId material);
   bool has_room(std::size_t objects, TomlTableReader& reader, const char* key) const;
 
   const TomlSceneContext& context_;
@@ -94,6 +96,7 @@ class TomlObjects {
   std::map<std::string, std::optional<Model>> models_;  // empty: could not be loaded
   std::map<std::string, MeshId> shapes_;                // by their parameters
   std::map<std::uint32_t, MeshId> plain_;  // by mesh: copies without triangle materials
+  std::map<std::pair<std::uint32_t, std::uint32_t>, CsgId> plain_trees_;  // by tree and material
   std::size_t shape_triangles_ = 0;
 };
 

@@ -69,7 +69,7 @@ inline Vec2f interpolated_uv(const GeometryRecord& record, const Triangle& indic
   return {w * a.x + u * b.x + v * c.x, w * a.y + u * b.y + v * c.y};
 }
 
-// What a hit tells besides where the surface is; returns its record.
+// What a hit on a mesh tells besides where the surface is; returns its record.
 inline const GeometryRecord& fill_owner(const SceneGeometry& geometry, const RTCRayHit& query,
                                         SurfaceHit& hit) {
   hit.geometry = geometry_of(query.hit);
@@ -86,9 +86,16 @@ inline const GeometryRecord& fill_owner(const SceneGeometry& geometry, const RTC
   return record;
 }
 
+// On a CSG solid: evaluated anew in double, along the same ray.
+void fill_csg_hit(const SceneGeometry& geometry, const TraceRay& ray, const RTCRayHit& query,
+                  SurfaceHit& hit);
+
 // Written in place: a hit is a hundred bytes, on the hottest path.
 inline void fill_hit(const SceneGeometry& geometry, const TraceRay& ray, const RTCRayHit& query,
                      SurfaceHit& hit) {
+  if (geometry.embree.records()[geometry_of(query.hit)].triangles == nullptr) [[unlikely]] {
+    return fill_csg_hit(geometry, ray, query, hit);
+  }
   const GeometryRecord& record = fill_owner(geometry, query, hit);
   hit.t = query.ray.tfar;
   const Triangle& indices = record.triangles[hit.triangle];

@@ -67,7 +67,7 @@ class Mesher {
       const Object& object = scene_.objects[i];
       const RoundingSettings* const s = settings_of(object);
       if (s == nullptr || s->method != RoundMethod::mesh) return;
-      if (scene_.meshes[object.mesh.index].triangles.empty()) return;
+      if (object.csg || scene_.meshes[object.mesh.index].triangles.empty()) return;
       radii[i] = resolve_radius(scene_, object, *s);
     });
     std::map<std::tuple<std::uint32_t, double, RoundEdges, double, int>, std::size_t> shared;

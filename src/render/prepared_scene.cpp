@@ -25,6 +25,7 @@ void end_if_stopped(const PrepareOptions& options) {
 void note_vanished_triangles(Scene& scene) {
   std::uint64_t triangles = 0, drawn = 0;
   for (const Object& object : scene.objects) {
+    if (object.csg) continue;
     triangles += scene.meshes[object.mesh.index].triangles.size();
     drawn += count_drawn_triangles(scene, object);
   }
@@ -57,6 +58,31 @@ std::vector<RoundingSummary> shader_summaries(const SceneGeometry& geometry,
   return summaries;
 }
 
+// What was asked for CSG solids, and isn't done.
+void add_csg_notes(const Scene& scene, const std::optional<RoundingSettings>& scene_default,
+                   std::vector<RoundingSummary>& summaries) {
+  for (std::uint32_t i = 0; i < scene.objects.size(); ++i) {
+    const Object& object = scene.objects[i];
+    const std::optional<RoundingSettings>& s = object.rounding ? object.rounding : scene_default;
+    if (!object.csg || !s || s->method == RoundMethod::none) continue;
+    RoundingSummary summary;
+    summary.object = object.name;
+    summary.object_index = i;
+    summary.notes.push_back({0, "", "CSG solids stay sharp: only meshes are rounded"});
+    summaries.push_back(std::move(summary));
+  }
+}
+
+SceneRounding round_scene(const SceneGeometry& geometry,
+                          const std::optional<RoundingSettings>& scene_default,
+                          const PrepareOptions& options) {
+  SceneRounding rounding =
+      make_scene_rounding(geometry, scene_default, {options.threads, options.detection});
+  rounding.shaders = make_bevel_shaders(geometry, scene_default);
+  add_csg_notes(geometry.scene, scene_default, rounding.summaries);
+  return rounding;
+}
+
 }  // namespace
 
 PreparedScene::PreparedScene(std::shared_ptr<const SceneGeometry> geometry, SceneRounding rounding)
@@ -65,9 +91,9 @@ PreparedScene::PreparedScene(std::shared_ptr<const SceneGeometry> geometry, Scen
   stats_.build_seconds = geometry_->build_seconds;
   stats_.objects = s.objects.size();
   for (const Object& object : s.objects) {
-    stats_.triangles += s.meshes[object.mesh.index].triangles.size();
+    stats_.triangles += object.csg ? 0 : s.meshes[object.mesh.index].triangles.size();
   }
-  stats_.geometry_bytes = geometry_->embree.bytes();
+  stats_.geometry_bytes = geometry_->embree.bytes() + geometry_->csg.bytes;
   // Bevel meshes count as rounding; their part of the acceleration structure counts as geometry.
   const MeshedBevels& meshed = geometry_->meshed;
   const std::size_t described =
@@ -123,9 +149,7 @@ std::shared_ptr<const PreparedScene> prepare_scene(Scene scene, const PrepareOpt
       meshed.seconds;
   geometry->meshed = std::move(meshed);
   end_if_stopped(options);
-  SceneRounding rounding = make_scene_rounding(*geometry, geometry->scene.rounding,
-                                               {options.threads, options.detection});
-  rounding.shaders = make_bevel_shaders(*geometry, geometry->scene.rounding);
+  SceneRounding rounding = round_scene(*geometry, geometry->scene.rounding, options);
   end_if_stopped(options);
   return std::make_shared<const PreparedScene>(std::move(geometry), std::move(rounding));
 }
@@ -139,9 +163,7 @@ std::shared_ptr<const PreparedScene> prepare_again(const PreparedScene& prepared
     scene.rounding = scene_default;
     return prepare_scene(std::move(scene), options);
   }
-  SceneRounding rounding =
-      make_scene_rounding(prepared.geometry(), scene_default, {options.threads, options.detection});
-  rounding.shaders = make_bevel_shaders(prepared.geometry(), scene_default);
+  SceneRounding rounding = round_scene(prepared.geometry(), scene_default, options);
   return std::make_shared<const PreparedScene>(prepared.shared_geometry(), std::move(rounding));
 }
 

@@ -53,7 +53,7 @@ struct SurfaceHit {
   Vec2f uv;                  // 0 where the mesh has none
   float u = 0, v = 0;        // barycentric weights of the second and third vertex
   std::uint32_t geometry = kNoGeometry;
-  std::uint32_t triangle = 0;
+  std::uint32_t triangle = 0;  // of a CSG solid: the cell
   MaterialId material;
   ObjectId object;
   Side side = Side::outside;  // where the ray came from
@@ -105,8 +105,11 @@ inline TraceRay leave_surface(const SurfaceHit& hit, Vec3f direction) {
   ray.origin =
       hit.position + hit.geometric_normal * (outward ? hit.position_error : -hit.position_error);
   ray.direction = direction;
-  ray.from = {hit.geometry, hit.triangle, outward ? Side::outside : Side::inside, hit.feature,
-              hit.crossed};
+  // A CSG solid's surfaces are exact: off by position_error is off.
+  if (hit.feature != Feature::csg) {
+    ray.from = {hit.geometry, hit.triangle, outward ? Side::outside : Side::inside, hit.feature,
+                hit.crossed};
+  }
   return ray;
 }
 

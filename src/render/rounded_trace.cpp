@@ -191,7 +191,7 @@ std::optional<SurfaceHit> RoundedTrace::trace_from_void() const {
   const std::optional<Found> found = trace_filtered(ray_, nullptr);
   if (!found) return std::nullopt;
   SurfaceHit hit = finish(*found);
-  hit.rounding_seen = hit.feature != Feature::face;  // as if traced from beyond the void
+  hit.rounding_seen = is_rounded(hit.feature);  // as if traced from beyond the void
   return hit;
 }
 
@@ -205,7 +205,7 @@ std::optional<SurfaceHit> RoundedTrace::trace_from_inside() const {
   before.t_max = own->t();
   const std::optional<Found> other = trace_filtered(before, &own->query.hit);
   SurfaceHit hit = finish(other && other->t() < own->t() ? *other : *own);
-  hit.rounding_seen = hit.feature != Feature::face;
+  hit.rounding_seen = is_rounded(hit.feature);
   return hit;
 }
 

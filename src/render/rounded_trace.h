@@ -74,6 +74,11 @@ inline std::optional<RTCRayHit> trace_mesh(const SceneGeometry& geometry, const 
   }
 }
 
+// A surface that rounding has made.
+inline bool is_rounded(Feature feature) {
+  return feature != Feature::face && feature != Feature::csg;
+}
+
 // Between the sharp and the rounded surface: where rays leave a rounded edge outward.
 inline bool starts_in_void(const TraceRay& ray) {
   return ray.from.feature != Feature::face && ray.from.side == Side::outside;

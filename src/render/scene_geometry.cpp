@@ -88,7 +88,10 @@ SceneBounds light_bounds(const Scene& scene) {
 }  // namespace
 
 SceneGeometry::SceneGeometry(Scene described, const EmbreeSceneOptions& options)
-    : scene(std::move(described)), embree(scene, options) {
+    : scene(std::move(described)),
+      csg(make_csg_objects(scene, options.threads)),
+      embree(scene, options, make_csg_boxes(scene, csg)) {
+  set_csg_records(csg, embree);
   std::transform(scene.materials.begin(), scene.materials.end(), std::back_inserter(materials),
                  prepare_material);
   any_translucent = std::any_of(materials.begin(), materials.end(),

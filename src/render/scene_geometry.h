@@ -6,6 +6,7 @@
 
 #include "arris/scene.h"
 #include "geometry/embree_scene.h"
+#include "render/csg_objects.h"
 #include "render/meshed_bevels.h"
 #include "shading/lights.h"
 #include "shading/surface_material.h"
@@ -36,6 +37,7 @@ struct EmitterIndex {
 struct SceneGeometry {
   Scene scene;          // camera and environment filled in, meshed bevels in their place
   MeshedBevels meshed;  // what they are
+  CsgObjects csg;       // its boxes are in `embree`
   EmbreeScene embree;
   std::vector<PreparedMaterial> materials;
   EmitterIndex emitter_index;

@@ -56,7 +56,13 @@ std::optional<Shot> Shooter::shoot(const Ray& ray) const {
   shot.object = hit->object;
   shot.feature = hit->feature;
   shot.inside = hit->side == Side::inside;
-  if (hit->feature == Feature::face) {
+  if (hit->feature == Feature::csg) {
+    const CsgObject& object = *scene_.geometry().csg.by_record[hit->geometry];
+    if (const auto point = find_csg_point(object, hit->triangle, ray, shot.t)) {
+      shot.normal = point->normal;
+      shot.t = std::max(0.0, point->t);
+    }
+  } else if (hit->feature == Feature::face) {
     if (const auto plane = plane_of(scene_, *hit)) {
       const double slope = dot(plane->normal, ray.direction);
       shot.normal = plane->normal;

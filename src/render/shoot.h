@@ -3,6 +3,7 @@
 //            double from the triangle that was hit
 // In / Out   a ray in world space whose direction need not be unit; t in lengths of it
 // Guarantee  on a flat face t, position and normal are those of the triangle's plane to double rounding
+//            On a CSG solid they are those of the exact surface.
 // Limits     which triangle is hit is decided in float: at an edge it may be the neighbour. Hits on rounded
 //            edges have float precision of the scene's size, wherever the ray comes from.
 // Cost       the constructor visits all vertices; shoot() is safe from any number of threads

@@ -7,6 +7,13 @@
 namespace arris {
 namespace {
 
+MaterialId csg_material(const SceneGeometry& geometry, const TraceRay& ray, const RTCHit& hit,
+                        float t) {
+  RTCRayHit query{make_ray(ray), hit};
+  query.ray.tfar = t;
+  return make_surface_hit(geometry, ray, query).material;
+}
+
 // Called for the surfaces that a shadow ray meets, in any order: it ends at the first that is there and
 // opaque. Of translucent ones it remembers what they let through.
 void filter_shadow(const RTCFilterFunctionNArguments* args) {
@@ -21,9 +28,12 @@ void filter_shadow(const RTCFilterFunctionNArguments* args) {
   }
   const SceneGeometry& geometry = *context->geometry;
   const GeometryRecord& record = geometry.embree.records()[geometry_of(*hit)];
-  const MaterialId id = material_of(record, hit->primID);
+  const bool is_csg = record.triangles == nullptr;
+  const MaterialId id = is_csg ? csg_material(geometry, *context->ray, *hit, query->tfar)
+                               : material_of(record, hit->primID);
   if (!geometry.materials[id.index].translucent) return;
-  const Vec2f uv = interpolated_uv(record, record.triangles[hit->primID], hit->u, hit->v);
+  const Vec2f uv =
+      is_csg ? Vec2f{} : interpolated_uv(record, record.triangles[hit->primID], hit->u, hit->v);
   context->transmittance *=
       1 - eval_opacity(geometry.scene.materials[id.index], geometry.scene.textures, uv);
   if (context->transmittance > 0) args->valid[0] = 0;

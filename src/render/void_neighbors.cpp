@@ -7,6 +7,7 @@
 #include <tuple>
 
 #include "base/parallel_for.h"
+#include "csg/csg_cells.h"
 
 namespace arris {
 namespace {
@@ -18,7 +19,7 @@ constexpr std::size_t kMaxVertices = 128;
 // Below this sine of half the dihedral angle, a void reaches so far that everything is taken to be in it.
 constexpr double kThinEdge = 0.05;
 
-// A shell of a rounded geometry, or all of another one.
+// A shell of a rounded geometry, or all of another one; of a CSG solid its box.
 struct Body {
   std::uint32_t geometry = 0;
   std::uint32_t solid = kNone;  // kNone: not rounded
@@ -81,7 +82,7 @@ class NeighborFinder {
  private:
   void collect_bodies(std::uint32_t geometry) {
     const GeometryRecord& record = geometry_.embree.records()[geometry];
-    if (record.triangles == nullptr) return;
+    if (record.triangles == nullptr) return collect_csg(geometry);
     const Rounding* rounding = out_.geometries[geometry].rounding;
     const std::size_t first = bodies_.size();
     bodies_.resize(first + (rounding != nullptr ? rounding->data().solids.size() : 1));
@@ -112,6 +113,20 @@ class NeighborFinder {
       if (bodies_[i].points.size() <= kMaxVertices) continue;
       const auto corners = corners_of(bodies_[i]);
       bodies_[i].points.assign(corners.begin(), corners.end());
+    }
+  }
+
+  // Its box in its own space, as the world holds it.
+  void collect_csg(std::uint32_t geometry) {
+    const CsgObject& csg = *geometry_.csg.by_record[geometry];
+    const Box3d& box = csg.cells->solid().bounds();
+    if (box.is_empty()) return;
+    Body& body = bodies_.emplace_back();
+    body.geometry = geometry;
+    const Affine3d& place = geometry_.scene.objects[csg.object.index].world_from_object;
+    for (const Vec3d& corner : corners_of(box)) {
+      body.points.push_back(transform_point(place, corner));
+      body.include(body.points.back());
     }
   }
 

@@ -95,8 +95,62 @@ class Fingerprint {
     add(r.shader.perturb);
     add(r.shader.divisions);
   }
+  // Its points follow each other without padding.
+  void add(const CsgRegion& region) { add_each(region.outlines); }
+  void add(const CsgSphere& sphere) { add(sphere.radius); }
+  void add(const CsgBox& box) {
+    add(box.low);
+    add(box.high);
+  }
+  void add(const CsgCone& cone) {
+    for (const double value : {cone.z_low, cone.z_high, cone.radius_low, cone.radius_high}) {
+      add(value);
+    }
+  }
+  void add(const CsgTorus& torus) {
+    add(torus.ring_radius);
+    add(torus.tube_radius);
+  }
+  void add(const CsgHalfSpace& half_space) {
+    add(half_space.normal);
+    add(half_space.d);
+  }
+  void add(const CsgPolyhedron& polyhedron) {
+    add_each(polyhedron.faces);
+    add(polyhedron.vertices);
+  }
+  void add(const CsgMesh& mesh) {
+    add(mesh.vertices);
+    add(mesh.triangles);
+  }
+  void add(const CsgPrism& prism) {
+    add(prism.region);
+    for (const double value : {prism.z_low, prism.z_high, prism.scale_high.x, prism.scale_high.y}) {
+      add(value);
+    }
+  }
+  void add(const CsgRevolution& revolution) { add(revolution.region); }
+  void add(const CsgRounded& rounded) {
+    add(rounded.core);
+    add(rounded.radius);
+  }
+  void add(const CsgLeaf& leaf) {
+    add(leaf.primitive);
+    add(leaf.object_from_primitive);
+    add(leaf.material);
+  }
+  void add(const CsgNode& node) {
+    add(node.leaf);
+    add(node.operation);
+    add(node.children);
+  }
+  void add(const CsgTree& tree) {
+    add_each(tree.nodes);
+    add_each(tree.leaves);
+  }
   void add(const Object& object) {
     add(object.mesh);
+    add(object.csg);
     add(object.material);
     add(object.world_from_object);
     add(object.rounding);
@@ -178,6 +232,7 @@ class Fingerprint {
 std::uint64_t scene_fingerprint(const Scene& scene) {
   Fingerprint fingerprint;
   fingerprint.add_each(scene.meshes);
+  fingerprint.add_each(scene.csg_trees);
   fingerprint.add_each(scene.materials);
   fingerprint.add_each(scene.textures);
   fingerprint.add_each(scene.objects);

@@ -13,6 +13,7 @@
 #include "arris/render.h"
 #include "scene/limits.h"
 #include "scene/scene_bounds.h"
+#include "scene/validate_csg.h"
 
 namespace arris {
 namespace {
@@ -206,6 +207,11 @@ void check_rounding(const std::string& where, const RoundingSettings& rounding,
   }
 }
 
+std::string name_of(const Object& object, std::size_t index) {
+  return object.name.empty() ? fmt::format("object {}", index)
+                             : fmt::format("object \"{}\"", object.name);
+}
+
 bool all_usable(const std::vector<Vec3f>& positions) {
   return std::ranges::all_of(positions, [](Vec3f p) { return usable_coordinate(Vec3d(p)); });
 }
@@ -216,7 +222,7 @@ void check_reach(const Scene& scene, const Object& object, const std::string& wh
   if (bounds.is_empty() || (usable_coordinate(bounds.lower) && usable_coordinate(bounds.upper))) {
     return;
   }
-  if (!all_usable(scene.meshes[object.mesh.index].positions)) return;  // said of the mesh
+  if (!object.csg && !all_usable(scene.meshes[object.mesh.index].positions)) return;  // said of it
   problems.push_back(fmt::format(
       "{}: reaches from {} to {}; coordinates must be numbers up to {:g}, scale it down", where,
       list(bounds.lower), list(bounds.upper), kMaxCoordinate));
@@ -228,9 +234,16 @@ void check_size(const Scene& scene, Problems& problems) {
   Bounds all;
   const Object* largest = nullptr;
   double size = -1;
-  for (const Object& object : scene.objects) {
-    triangles += scene.meshes[object.mesh.index].triangles.size();
-    drawn += count_drawn_triangles(scene, object);
+  bool any_csg = false;
+  for (std::size_t i = 0; i < scene.objects.size(); ++i) {
+    const Object& object = scene.objects[i];
+    if (object.csg) {
+      any_csg = true;
+      check_reach(scene, object, name_of(object, i), problems);
+    } else {
+      triangles += scene.meshes[object.mesh.index].triangles.size();
+      drawn += count_drawn_triangles(scene, object);
+    }
     const Bounds bounds = world_bounds(scene, object);
     all.add(bounds);
     if (bounds.diagonal() > size) {
@@ -238,13 +251,13 @@ void check_size(const Scene& scene, Problems& problems) {
       size = bounds.diagonal();
     }
   }
-  if (triangles == 0) return;
+  if (triangles == 0 && !any_csg) return;
   if (all.diagonal() > 0 && all.diagonal() < kMinSize) {
     problems.push_back(fmt::format(
         "object \"{}\": is {:g} large; at least {:g} is needed, as areas of smaller triangles "
         "vanish in floats; scale it up",
         largest->name, all.diagonal(), kMinSize));
-  } else if (drawn == 0) {
+  } else if (drawn == 0 && triangles > 0 && !any_csg) {
     problems.push_back(fmt::format(
         "object \"{}\": nothing is left to draw: of {} triangles none has an area at coordinates "
         "near {}; move the model nearer to the origin, or check it",
@@ -254,9 +267,12 @@ void check_size(const Scene& scene, Problems& problems) {
 
 void check_object(const Scene& scene, std::size_t index, Problems& problems) {
   const Object& object = scene.objects[index];
-  const std::string where = object.name.empty() ? fmt::format("object {}", index)
-                                                : fmt::format("object \"{}\"", object.name);
-  if (object.mesh.index >= scene.meshes.size()) {
+  const std::string where = name_of(object, index);
+  if (object.csg && object.csg->index >= scene.csg_trees.size()) {
+    problems.push_back(fmt::format("{}: uses CSG tree {}, but there are {}", where,
+                                   object.csg->index, scene.csg_trees.size()));
+  }
+  if (!object.csg && object.mesh.index >= scene.meshes.size()) {
     problems.push_back(fmt::format("{}: uses mesh {}, but there are {}", where, object.mesh.index,
                                    scene.meshes.size()));
   }
@@ -274,7 +290,7 @@ void check_object(const Scene& scene, std::size_t index, Problems& problems) {
     problems.push_back(
         fmt::format("{}: its transform flattens it (determinant {:g}); use a scale other than 0",
                     where, determinant(m.linear)));
-  } else if (object.mesh.index < scene.meshes.size()) {
+  } else if (!object.csg && object.mesh.index < scene.meshes.size()) {
     check_reach(scene, object, where, problems);
   }
   if (object.rounding) {
@@ -417,6 +433,9 @@ std::vector<std::string> validate_scene(const Scene& scene) {
   }
   for (std::size_t i = 0; i < scene.meshes.size(); ++i) {
     check_mesh(scene, i, problems);
+  }
+  for (std::size_t i = 0; i < scene.csg_trees.size(); ++i) {
+    check_csg_tree(scene, i, problems);
   }
   for (std::size_t i = 0; i < scene.materials.size(); ++i) {
     check_material(scene, i, problems);

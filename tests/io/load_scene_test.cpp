@@ -37,7 +37,7 @@ class LoadScene : public testing::Test {
     return path;
   }
   std::string message_of(const std::filesystem::path& path) {
-    return test::error_message(load_scene, path);
+    return test::error_message([](const auto& p) { return load_scene(p); }, path);
   }
 
   test::TemporaryFolder folder_;
@@ -103,6 +103,8 @@ TEST(SceneBytes, are_told_apart_by_their_content) {
   EXPECT_EQ(extension("\n {\n\"asset\": {}}"), ".gltf");
   EXPECT_EQ(extension("# a scene\n[image]\nsize = [4, 4]\n"), ".toml");
   EXPECT_EQ(extension("round=0.5\n"), ".toml");
+  EXPECT_EQ(extension("// a part\ngroup() {\n\tcube(size = 1);\n}\n"), ".csg");
+  EXPECT_EQ(extension("  cube(size = 1, center = false);\n"), ".csg");
   EXPECT_THAT(test::error_message(extension, "hello there"),
               HasSubstr("holds no model that Arris knows"));
   EXPECT_THAT(test::error_message(extension, ""), HasSubstr("is empty"));

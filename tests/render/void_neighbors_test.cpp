@@ -9,6 +9,7 @@
 #include "render/scene_geometry.h"
 #include "render/scene_rounding.h"
 #include "support/convex_solids.h"
+#include "support/csg_oracle.h"
 #include "support/render_scenes.h"
 
 namespace arris::test {
@@ -26,10 +27,26 @@ struct Heap {
   // Each its own way; else faces of neighbours are parallel, and coincide if step is 1.
   bool turned = false;
   double scale = 0;  // of true instances of one cube; 0: pieces of their own
+  bool csg = false;  // every other piece is a CSG solid
 };
 
 Mat3d scaled(double scale) {
   return {{scale, 0, 0}, {0, scale, 0}, {0, 0, scale}};
+}
+
+// The mesh's bounds as a solid.
+void add_csg_box(Scene& scene, const Mesh& mesh, const Affine3d& place) {
+  CsgBox box{Vec3d(mesh.positions[0]), Vec3d(mesh.positions[0])};
+  for (const Vec3f& p : mesh.positions) {
+    box.low = min(box.low, Vec3d(p));
+    box.high = max(box.high, Vec3d(p));
+  }
+  Object object;
+  object.name = "csg " + std::to_string(scene.objects.size());
+  object.csg = CsgId{std::uint32_t(scene.csg_trees.size())};
+  object.world_from_object = place;
+  scene.csg_trees.push_back(one_leaf(box));
+  scene.objects.push_back(object);
 }
 
 // Cubes, prisms and dodecahedra of about unit size on a ground plane.
@@ -53,6 +70,10 @@ Scene make_heap(const Heap& heap, std::uint64_t seed) {
         if (heap.turned) place.linear = oracle::random_rotation(random);
         place.translation = Vec3d(i, j, k) * heap.step +
                             oracle::random_direction(random) * uniform(random, 0, heap.scatter);
+        if (heap.csg && (i + j + k) % 2 == 0) {
+          add_csg_box(scene, mesh, place);
+          continue;
+        }
         if (heap.scale > 0) place.linear = scaled(heap.scale);
         Object& object = add_object(scene, std::move(mesh), make_lambert(0.5F), place);
         if (heap.scale > 0) object.mesh = {0};
@@ -132,7 +153,7 @@ TEST_P(VoidNeighborsOf, rays_agree_with_those_traced_through_the_void) {
         const bool is_met = fast && fast->t < shadow.t_max;
         untrue_shadows += scenes->fast.occluded(shadow) == is_met ? 0 : 1;
         if (!fast) break;
-        from_edges += fast->feature != Feature::face ? 1 : 0;
+        from_edges += fast->feature == Feature::edge || fast->feature == Feature::corner ? 1 : 0;
         skipped += fast->crossed != kNone ? 1 : 0;
         Vec3f direction(oracle::random_direction(random));
         if (dot(direction, fast->geometric_normal) < 0) direction = -direction;
@@ -157,6 +178,10 @@ INSTANTIATE_TEST_SUITE_P(Heaps, VoidNeighborsOf,
                                            Heap{"touching", 1, 0, false},
                                            Heap{"overlapping", 0.93, 0.05, false},
                                            Heap{"turned", 1.05, 0.1, true},
+                                           Heap{"csg_near", 1.001, 0.0005, false, 0, true},
+                                           Heap{"csg_touching", 1, 0, false, 0, true},
+                                           Heap{"csg_overlapping", 0.93, 0.05, false, 0, true},
+                                           Heap{"csg_turned", 1.05, 0.1, true, 0, true},
                                            Heap{"instances_grown", 0.93, 0.05, false, 1000},
                                            Heap{"instances_shrunk", 0.93, 0.05, false, 0.001}),
                          heap_name);

@@ -15,6 +15,7 @@
 
 #include "arris/error.h"
 #include "arris/scene.h"
+#include "scene/validate_csg.h"
 
 namespace arris::test {
 
@@ -50,8 +51,12 @@ inline std::string problem_of(const Scene& scene) {
   for (const Mesh& mesh : scene.meshes) {
     if (const std::string problem = problem_of(mesh, scene); !problem.empty()) return problem;
   }
+  std::vector<std::string> problems;
+  for (std::size_t i = 0; i < scene.csg_trees.size(); ++i) check_csg_tree(scene, i, problems);
+  if (!problems.empty()) return problems[0];
   for (const Object& object : scene.objects) {
-    if (object.mesh.index >= scene.meshes.size()) return "an object's mesh id";
+    if (object.csg && object.csg->index >= scene.csg_trees.size()) return "an object's CSG id";
+    if (!object.csg && object.mesh.index >= scene.meshes.size()) return "an object's mesh id";
     if (object.material.index >= scene.materials.size()) return "an object's material id";
   }
   return "";
