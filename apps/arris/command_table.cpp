@@ -62,9 +62,9 @@ CommandRow render_row() {
         {{"-o,--output", "FILE",
           "the picture: .png .jpg (tone-mapped), .exr .pfm (linear); - writes PNG to stdout"},
          {"--aov", "LIST",
-          "more layers, separated by commas: albedo, normal, depth, object, rounded, bevel_fac; "
-          "part of "
-          "an .exr, else beside the picture as .NAME.pfm"},
+          "more layers, separated by commas: albedo, normal, depth, object, rounded, bevel_fac "
+          "(path); coverage_lo, coverage_hi, uncertified (beam); part of an .exr, else beside the "
+          "picture as .NAME.pfm"},
          {"--exposure", "STOPS", "brightness of .png and .jpg (default: the scene's, else 0)"},
          {"--stats", "FILE", "write times, counts and memory as JSON; - for stdout"}}},
        {"Picture",
@@ -77,7 +77,12 @@ CommandRow render_row() {
          {"--samples", "A..B",
           "only these samples of the sequence; arris merge joins such .exr parts, which hold their "
           "exact sums besides, to the bytes of the whole"},
-         {"--integrator", "path", "how light is computed (default: path)"}}},
+         {"--integrator", "path|beam",
+          "path: path tracing; beam: CSG solids with certain bounds on what each pixel shows "
+          "(default: path)"},
+         {"--beam-rule", "certified|corners",
+          "how beams find uniform regions; certified: by bounds that hold; corners: by four rays, "
+          "as in the paper of 1996, for comparison (default: certified)"}}},
        input_group(),
        camera_group(),
        {"Staging",

@@ -3,6 +3,8 @@
 #include <chrono>
 #include <cmath>
 #include <cstdio>
+#include <string>
+#include <vector>
 
 #include "arris/command_line.h"
 #include "arris/commands.h"
@@ -81,6 +83,10 @@ RenderJob make_job(const RenderRequest& request, const Scene& scene) {
   job.options.aovs = request.aovs;
   job.part.scene = scene_fingerprint(scene);
   job.part.seed = request.seed;
+  job.part.integrator = name_of(request.integrator);
+  if (request.integrator == Integrator::beam) {
+    job.chunk_samples = job.options.samples.last - job.options.samples.first;
+  }
   job.checkpoint = request.checkpoint;
   return job;
 }
@@ -115,6 +121,13 @@ void report_result(Console& console, const RenderRequest& request, const JobResu
   }
 }
 
+void check_beam_scene(const Scene& scene, const std::string& name) {
+  const std::vector<std::string> problems = beam_problems(scene);
+  if (!problems.empty()) {
+    throw Error(Error::Kind::input, name, fmt::format("{}", fmt::join(problems, "\n  ")));
+  }
+}
+
 }  // namespace
 
 int run_render(const Arguments& arguments) {
@@ -129,6 +142,7 @@ int run_render(const Arguments& arguments) {
   check_scene(loaded.scene, loaded.name);  // before staging adds what is not the file's
   if (loaded.is_scene_file) request.stage.source = StageOptions::Source::scene_file;
   const StagingReport staging = apply_request(loaded.scene, request, arguments);
+  if (request.integrator == Integrator::beam) check_beam_scene(loaded.scene, loaded.name);
   stats.load_seconds = load.seconds();
 
   const auto prepared =
@@ -142,9 +156,11 @@ int run_render(const Arguments& arguments) {
   RenderJob job = make_job(request, scene);
   job.options.stop = &stop;
   job.options.on_progress = [&](const Progress& progress) { console.show_progress(progress); };
-  const JobResult result = run_job(*make_path_renderer(), *prepared, job);
+  const JobResult result =
+      run_job(*make_renderer(request.integrator, request.beam_rule), *prepared, job);
   console.end_progress();
   stats.rays = result.rays;
+  stats.beam = result.beam;
   stats.render_seconds = result.seconds;
 
   const Stopwatch write;

@@ -86,7 +86,7 @@ class Job {
   // False if the chunk could not be completed.
   bool render_chunk(JobResult& result) {
     RenderOptions options = job_.options;
-    options.samples = {position_, std::min(options.samples.last, position_ + kChunkSamples)};
+    options.samples = {position_, std::min(options.samples.last, position_ + job_.chunk_samples)};
     options.least_samples = sum_.samples == 0 ? 1 : 0;
     if (options.time_limit_seconds > 0) {
       constexpr double kLeast = 1e-3;  // 0 means no limit
@@ -100,6 +100,7 @@ class Job {
     result.rays.camera += chunk.rays.camera;
     result.rays.total += chunk.rays.total;
     result.rays.rounded += chunk.rays.rounded;
+    result.beam = chunk.beam;
     const std::uint32_t samples = chunk.samples.last - chunk.samples.first;
     add_sum(sum_, *chunk.sum);
     position_ += samples;

@@ -22,12 +22,14 @@ struct RenderJob {
   RenderOptions options;
   RenderPart part;  // scene, seed and integrator; its samples are filled in
   std::optional<std::filesystem::path> checkpoint;
+  std::uint32_t chunk_samples = kChunkSamples;
 };
 
 struct JobResult {
   PictureSum sum;
   RenderPart part;
-  RayCounts rays;             // of this run
+  RayCounts rays;  // of this run
+  std::optional<BeamCounts> beam;
   double seconds = 0;         // of this run
   std::uint64_t resumed = 0;  // samples from the checkpoint
   bool complete = false;      // all samples that were asked for

@@ -73,25 +73,55 @@ std::optional<SampleRange> make_samples(const Arguments& arguments) {
   return std::nullopt;
 }
 
-void check_integrator(const Arguments& arguments) {
+Integrator parse_integrator(const Arguments& arguments) {
   const auto given = find_given(arguments, "--integrator");
-  if (!given) return;
-  if (given->text == "beam" || given->text == "edge-point") {
+  if (!given) return Integrator::path;
+  if (given->text == "edge-point") {
     throw Error(Error::Kind::input, "",
-                fmt::format("integrator {} is not in this build; use path", given->text));
+                "integrator edge-point is not in this build; use path or beam");
   }
-  parse_choice(*given, {"path"});
+  constexpr Integrator kIntegrators[] = {Integrator::path, Integrator::beam};
+  return kIntegrators[parse_choice(*given, {"path", "beam"})];
 }
 
-std::vector<std::string> parse_aovs(const Arguments& arguments) {
+BeamRule parse_beam_rule(const Arguments& arguments, Integrator integrator) {
+  const auto given = find_given(arguments, "--beam-rule");
+  if (!given) return BeamRule::certified;
+  if (integrator != Integrator::beam) {
+    throw Error(Error::Kind::input, "--beam-rule", "needs --integrator beam");
+  }
+  constexpr BeamRule kRules[] = {BeamRule::certified, BeamRule::corners};
+  return kRules[parse_choice(*given, {"certified", "corners"})];
+}
+
+// The beam renderer goes through the picture once, and takes no meshes.
+void check_beam_options(const Arguments& arguments) {
+  for (const char* option : {"--time", "--checkpoint"}) {
+    if (!arguments.has(option)) continue;
+    throw Error(Error::Kind::input, option,
+                "can't be used with --integrator beam, which makes its picture in one pass; leave "
+                "it out or use --integrator path");
+  }
+  const auto ground = find_given(arguments, "--ground");
+  if (ground && ground->text == "on") {
+    throw Error(Error::Kind::input, "--ground",
+                "is a mesh, and --integrator beam takes CSG solids only; use --ground off or "
+                "--integrator path");
+  }
+}
+
+std::vector<std::string> parse_aovs(const Arguments& arguments, Integrator integrator) {
   const auto given = find_given(arguments, "--aov");
   if (!given) return {};
-  const std::vector<std::string> known = make_path_renderer()->aovs();
+  const std::vector<std::string> known = make_renderer(integrator)->aovs();
   std::vector<std::string> aovs;
   for (const std::string& name : parse_list(*given)) {
-    if (name == "coverage_lo" || name == "coverage_hi" || name == "uncertified") {
+    for (const Integrator other : {Integrator::path, Integrator::beam}) {
+      const std::vector<std::string> names = make_renderer(other)->aovs();
+      const bool is_known = std::ranges::find(known, name) != known.end();
+      if (is_known || std::ranges::find(names, name) == names.end()) continue;
       throw Error(Error::Kind::input, "--aov",
-                  fmt::format("{} needs the integrator beam, which is not in this build", name));
+                  fmt::format("{} needs --integrator {}", name, name_of(other)));
     }
     parse_choice({"--aov", name}, known);
     if (std::find(aovs.begin(), aovs.end(), name) == aovs.end()) aovs.push_back(name);
@@ -136,14 +166,24 @@ void check_files(const RenderRequest& request) {
 
 }  // namespace
 
+std::unique_ptr<Renderer> make_renderer(Integrator integrator, BeamRule rule) {
+  return integrator == Integrator::beam ? make_beam_renderer(rule) : make_path_renderer();
+}
+const char* name_of(Integrator integrator) {
+  return integrator == Integrator::beam ? "beam" : "path";
+}
+
 RenderRequest make_render_request(const Arguments& arguments) {
   RenderRequest request;
   request.input = arguments.positionals[0];
   request.load = load_options_of(arguments);
   request.output = parse_output(arguments);
-  check_integrator(arguments);
-  request.aovs = parse_aovs(arguments);
+  request.integrator = parse_integrator(arguments);
+  request.beam_rule = parse_beam_rule(arguments, request.integrator);
+  if (request.integrator == Integrator::beam) check_beam_options(arguments);
+  request.aovs = parse_aovs(arguments, request.integrator);
   request.stage = make_stage_options(arguments);
+  if (request.integrator == Integrator::beam) request.stage.ground = false;
   request.samples = make_samples(arguments);
   request.is_part = arguments.has("--samples");
   request.threads = threads_of(arguments);

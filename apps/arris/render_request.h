@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -14,12 +15,16 @@
 
 namespace arris::program {
 
+enum class Integrator { path, beam };
+
 struct RenderRequest {
   std::string input;  // "-": stdin
   LoadOptions load;
   std::string output;  // "-": PNG to stdout
   std::optional<std::string> stats;
   std::optional<std::filesystem::path> checkpoint;
+  Integrator integrator = Integrator::path;
+  BeamRule beam_rule = BeamRule::certified;
   StageOptions stage;
   std::optional<SampleRange> samples;  // empty: from 0 to the scene's
   bool is_part = false;                // to be joined with others
@@ -28,6 +33,9 @@ struct RenderRequest {
   int threads = 0;
   std::vector<std::string> aovs;
 };
+
+std::unique_ptr<Renderer> make_renderer(Integrator integrator, BeamRule rule = BeamRule::certified);
+const char* name_of(Integrator integrator);
 
 RenderRequest make_render_request(const Arguments& arguments);
 

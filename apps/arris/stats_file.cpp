@@ -30,6 +30,12 @@ std::string stats_json(const RenderStats& stats) {
   json["triangles"] = prepare.triangles;
   json["rounded_edges"] = prepare.rounded_edges;
   json["rounded_corners"] = prepare.rounded_corners;
+  if (stats.beam) {
+    json["beam"] = {{"regions", stats.beam->regions},
+                    {"rays", stats.beam->rays},
+                    {"certified_fraction", stats.beam->certified_fraction},
+                    {"uncertified_pixels", stats.beam->uncertified_pixels}};
+  }
   return json.dump(2) + "\n";
 }
 

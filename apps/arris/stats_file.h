@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 
 #include "arris/render.h"
@@ -12,6 +13,7 @@ struct RenderStats {
   double load_seconds = 0, render_seconds = 0, write_seconds = 0;
   PrepareStats prepare;
   RayCounts rays;
+  std::optional<BeamCounts> beam;
 };
 
 std::string stats_json(const RenderStats& stats);

@@ -4,17 +4,18 @@
 //            closest hits and of occlusion, in rounds in which every scene has its turn; ratios pair times of one
 //            round.
 // Usage      bench_csg [--rounds N] [--rays N] [--largest N]
+//            bench_csg --beam examples/beam [--path 4,16,64] [--corners 0] [--threads N]: see beam_table.cpp
 #include <fmt/format.h>
 
 #include <chrono>
 #include <cmath>
 #include <cstdlib>
-#include <cstring>
 #include <memory>
 #include <random>
 #include <string>
 #include <vector>
 
+#include "beam_table.h"
 #include "csg/csg_cells.h"
 #include "interleaved.h"
 #include "render/prepared_scene.h"
@@ -195,13 +196,33 @@ int run_all(const Settings& settings) {
 }  // namespace
 }  // namespace arris::bench
 
+namespace {
+
+std::vector<int> parse_counts(const std::string& text) {
+  std::vector<int> counts;
+  for (std::size_t at = 0; at < text.size();) {
+    counts.push_back(std::atoi(text.c_str() + at));
+    const std::size_t comma = text.find(',', at);
+    at = comma == std::string::npos ? text.size() : comma + 1;
+  }
+  return counts;
+}
+
+}  // namespace
+
 int main(int argc, char** argv) {
   arris::bench::Settings settings;
+  arris::bench::BeamTableSettings beam;
   for (int i = 1; i + 1 < argc; i += 2) {
+    const std::string option = argv[i];
     const int value = std::atoi(argv[i + 1]);
-    if (std::strcmp(argv[i], "--rounds") == 0) settings.rounds = value;
-    if (std::strcmp(argv[i], "--rays") == 0) settings.rays = value;
-    if (std::strcmp(argv[i], "--largest") == 0) settings.largest = value;
+    if (option == "--rounds") settings.rounds = value;
+    if (option == "--rays") settings.rays = value;
+    if (option == "--largest") settings.largest = value;
+    if (option == "--beam") beam.folder = argv[i + 1];
+    if (option == "--path") beam.path_samples = parse_counts(argv[i + 1]);
+    if (option == "--corners") beam.corners = value != 0;
+    if (option == "--threads") beam.threads = value;
   }
-  return arris::bench::run_all(settings);
+  return beam.folder.empty() ? arris::bench::run_all(settings) : arris::bench::run_beam_table(beam);
 }

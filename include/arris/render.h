@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -75,7 +76,7 @@ struct RenderOptions {
   std::uint32_t least_samples = 1;  // made even if the time is over
   std::uint32_t seed = 0;
   int threads = 0;                // 0: all
-  std::vector<std::string> aovs;  // albedo normal depth object rounded bevel_fac
+  std::vector<std::string> aovs;  // of Renderer::aovs()
   // Set from any thread; the render ends within a second, perhaps without any sample.
   const std::atomic<bool>* stop = nullptr;
   std::function<void(const Progress&)> on_progress;  // from one thread at a time
@@ -87,6 +88,15 @@ struct RayCounts {
   std::uint64_t rounded = 0;
 };
 
+// What the beam renderer found.
+struct BeamCounts {
+  std::uint64_t regions = 0;      // beams that were looked at
+  std::uint64_t rays = 0;         // that stand for what stayed unknown
+  double certified_fraction = 0;  // of the picture's area
+  std::uint64_t uncertified_pixels =
+      0;  // with a surface whose coverage is known to less than 1/512
+};
+
 struct PictureSum;  // the program's (src/image/picture_sum.h)
 
 struct RenderResult {
@@ -94,6 +104,7 @@ struct RenderResult {
   std::shared_ptr<const PictureSum> sum;  // of which `picture` is the mean
   SampleRange samples;                    // what was rendered: shorter than asked for if stopped
   RayCounts rays;
+  std::optional<BeamCounts> beam;
   double seconds = 0;
 };
 
@@ -107,5 +118,13 @@ class Renderer {
 };
 
 std::unique_ptr<Renderer> make_path_renderer();
+
+// certified: bounds decide; corners: four rays decide, as in the paper, for comparison.
+enum class BeamRule { certified, corners };
+// CSG solids with the coverage of every surface in every pixel between certain bounds (docs/beam.md). Every pixel is
+// its square, whatever the image's filter. Precondition: beam_problems() is empty.
+std::unique_ptr<Renderer> make_beam_renderer(BeamRule rule = BeamRule::certified);
+// What of a scene the beam renderer can't take, one line each with a remedy.
+std::vector<std::string> beam_problems(const Scene& scene);
 
 }  // namespace arris

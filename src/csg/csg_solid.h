@@ -38,6 +38,7 @@ class CsgSolid {
   [[nodiscard]] const CsgExpression& root() const { return root_; }
   // By number in the tree; those without points have empty bounds and are in no expression.
   [[nodiscard]] const PlacedLeaf& leaf(std::uint32_t index) const { return leaves_[index]; }
+  [[nodiscard]] std::size_t leaf_count() const { return leaves_.size(); }
   [[nodiscard]] const SurfaceTable& surfaces() const { return surfaces_; }
   // Contains the solid; infinite if nothing bounds it.
   [[nodiscard]] const Box3d& bounds() const { return bounds_; }

@@ -55,6 +55,7 @@ struct Path {
   bool light_sampled = false;
   std::uint32_t passes = 0;
   float passed_distance = 0;
+  const KnownSight* known = nullptr;  // until the first vertex is done
 
   // Weight of an emitter that BSDF sampling found and light sampling finds with density light_pdf.
   template <class LightPdf>
@@ -153,7 +154,7 @@ std::optional<Shadow> Path::sample_shadow(const SurfaceHit& hit, const Frame& fr
   const Vec2f u = sampler.next_2d();
   const float u_select = lights.emitters.size() > 1 ? sampler.next_1d() : 0.0F;
   const std::optional<LightSample> light = sample_light(lights, hit.position, u_select, u);
-  if (!light) {
+  if (!light || (known != nullptr && light->is_delta)) {
     return std::nullopt;
   }
   const Vec3f wi = local_from_world(frame, light->wi);
@@ -238,15 +239,15 @@ void fill_first_hit(FirstHit& first, const SurfaceHit& hit, const SurfaceMateria
   first.object = hit.object.index + 1;
 }
 
-}  // namespace
-
-PathSample trace_path(const PreparedScene& scene, const PathSettings& settings, TraceRay camera_ray,
-                      Sampler sampler, PathRays& rays) {
+PathSample trace(Path& path) {
+  const PreparedScene& scene = path.scene;
+  const PathSettings& settings = path.settings;
+  PathRays& rays = path.rays;
   PathSample result;
-  Path path{scene, scene.geometry().lights, settings, sampler, rays, camera_ray};
   for (int depth = 0; path.passes < kMaxPasses;) {
-    const std::optional<SurfaceHit> hit = scene.intersect(path.ray);
-    ++rays.total;
+    const bool is_known = path.known != nullptr && depth == 0 && path.passes == 0;
+    const std::optional<SurfaceHit> hit = is_known ? path.known->hit : scene.intersect(path.ray);
+    rays.total += is_known ? 0 : 1;
     path.add_area_lights(hit ? hit->t : std::numeric_limits<float>::infinity());
     if (!hit) {
       path.add_background();
@@ -270,7 +271,9 @@ PathSample trace_path(const PreparedScene& scene, const PathSettings& settings, 
     const Bsdf bsdf = make_bsdf(
         material, wo, hit->side == Side::inside ? MediumSide::inside : MediumSide::outside);
     path.sampler.set_dimension(kCameraDimensions + std::uint32_t(depth) * kDimensionsPerVertex);
+    if (path.passes > 0) path.known = nullptr;  // what is behind it nobody else lights
     const std::optional<Shadow> shadow = path.sample_shadow(*hit, frame, bsdf);
+    path.known = nullptr;
     path.sampler.set_dimension(kCameraDimensions + std::uint32_t(depth) * kDimensionsPerVertex + 2);
     const Vec2f u = path.sampler.next_2d();
     const bool goes_on = path.scatter(*hit, frame, bsdf, u.x) &&
@@ -287,6 +290,21 @@ PathSample trace_path(const PreparedScene& scene, const PathSettings& settings, 
   }
   result.radiance = path.radiance;
   return result;
+}
+
+}  // namespace
+
+PathSample trace_path(const PreparedScene& scene, const PathSettings& settings, TraceRay camera_ray,
+                      Sampler sampler, PathRays& rays) {
+  Path path{scene, scene.geometry().lights, settings, sampler, rays, camera_ray};
+  return trace(path);
+}
+
+PathSample trace_known_sight(const PreparedScene& scene, const PathSettings& settings,
+                             const KnownSight& sight, Sampler sampler, PathRays& rays) {
+  Path path{scene, scene.geometry().lights, settings, sampler, rays, sight.ray};
+  path.known = &sight;
+  return trace(path);
 }
 
 }  // namespace arris

@@ -11,6 +11,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 
 #include "arris/math.h"
 #include "base/sobol.h"
@@ -41,5 +42,14 @@ struct PathSample {
 inline constexpr std::uint32_t kCameraDimensions = 1;
 PathSample trace_path(const PreparedScene& scene, const PathSettings& settings, TraceRay camera_ray,
                       Sampler sampler, PathRays& rays);
+
+// A camera ray of which it is known what it meets, and of which someone else adds up what lights without extent
+// (point, spot, directional) send to that point directly.
+struct KnownSight {
+  TraceRay ray;
+  std::optional<SurfaceHit> hit;  // nothing: it leaves the scene
+};
+PathSample trace_known_sight(const PreparedScene& scene, const PathSettings& settings,
+                             const KnownSight& sight, Sampler sampler, PathRays& rays);
 
 }  // namespace arris

@@ -35,7 +35,7 @@ TEST(Usage, help_and_version_go_to_stdout) {
 
 TEST(Usage, help_lists_only_what_works) {
   const std::string help = Workplace().arris("render --help").out;
-  for (const char* missing : {"beam", "edge-point", "--frames", "coverage_lo"}) {
+  for (const char* missing : {"edge-point", "--frames"}) {
     EXPECT_THAT(help, testing::Not(HasSubstr(missing)));
   }
 }
@@ -76,14 +76,18 @@ INSTANTIATE_TEST_SUITE_P(
                "arris render has no option --xyzzy; arris render --help lists them\n"},
         Misuse{"render cube.stl -o a.png --frames 0..9",
                "--frames is not in this build; render one picture at a time\n"},
-        Misuse{"render cube.stl -o a.png --integrator beam",
-               "integrator beam is not in this build; use path\n"},
+        Misuse{"render cube.stl -o a.png --integrator beam --time 3",
+               "--time: can't be used with --integrator beam, which makes its picture in one pass; "
+               "leave it out or use --integrator path\n"},
+        Misuse{"render cube.stl -o a.png --beam-rule corners",
+               "--beam-rule: needs --integrator beam\n"},
         Misuse{"render cube.stl -o a.png --integrator edge-point",
-               "integrator edge-point is not in this build; use path\n"},
-        Misuse{"render cube.stl -o a.png --integrator pth",
-               "--integrator: \"pth\" is not known; use path; did you mean \"path\"?\n"},
+               "integrator edge-point is not in this build; use path or beam\n"},
+        Misuse{
+            "render cube.stl -o a.png --integrator pth",
+            "--integrator: \"pth\" is not known; use one of path, beam; did you mean \"path\"?\n"},
         Misuse{"render cube.stl -o a.png --aov coverage_lo",
-               "--aov: coverage_lo needs the integrator beam"},
+               "--aov: coverage_lo needs --integrator beam\n"},
         Misuse{"render cube.stl -o a.png --aov albeda",
                "--aov: \"albeda\" is not known; use one of albedo, normal, depth, object, rounded, "
                "bevel_fac; did you mean \"albedo\"?\n"},

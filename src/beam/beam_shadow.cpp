@@ -1,0 +1,184 @@
+#include "beam/beam_shadow.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace arris {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr std::size_t kMostLights = 32;
+
+Sign sign_of(double x) {
+  return x > 0 ? Sign::positive : x < 0 ? Sign::negative : Sign::unknown;
+}
+
+// On which side of the plane, in the solid's space.
+Sign side_of(const CsgPlane& plane, Vec3d p) {
+  return sign_of(dot(plane.normal, p) - plane.d);
+}
+
+// How far from the light the farthest rays meet the plane.
+double depth_of(const PlaneForm& plane, const Rect& rect) {
+  const Interval height = absolute(range_over(plane.height, rect));
+  const Interval slope = absolute(range_over(plane.slope, rect));
+  return slope.lo > 0 ? next_up(height.hi / slope.lo) : kInfinity;
+}
+
+// No two points of the solids are farther apart.
+double diameter_of(std::span<const BeamSolid> solids) {
+  Box3d all{Vec3d(kInfinity), Vec3d(-kInfinity)};
+  for (const BeamSolid& s : solids) {
+    const Box3d& own = s.solid->bounds();
+    if (own.is_empty()) continue;
+    const Affine3d world_from_object = inverse(s.object_from_world);
+    all = hull(all, box_of(map_cell(world_from_object, make_cell(own))));
+  }
+  return all.is_empty() ? 0 : length(all.high - all.low);
+}
+
+}  // namespace
+
+ShadowLooker::ShadowLooker(std::span<const BeamSolid> solids, const EyeRays& eye,
+                           std::span<const LightPlace> lights)
+    : solids_(solids),
+      eye_(eye),
+      lights_(lights.first(std::min(lights.size(), kMostLights))),
+      reach_(2 * diameter_of(solids)) {}
+
+namespace {
+
+struct Placed {
+  LitPlane lit;
+  std::optional<LookTree> seen_by_light;  // nothing: the light is behind
+};
+
+// The light's tree in the place of a surface's node: its ends are that surface, lit or not. They go to `ends`.
+void splice(LookTree& tree, std::uint32_t at, std::uint32_t bit,
+            const std::optional<LookTree>& seen_by_light, std::vector<std::uint32_t>& ends) {
+  if (!seen_by_light) {
+    tree.nodes[at].lit |= bit;
+    tree.nodes[at].lit_known |= bit;
+    ends.push_back(at);
+    return;
+  }
+  const LookNode surface = tree.nodes[at];
+  const auto base = std::uint32_t(tree.nodes.size()) - 1;
+  const auto place = [&](std::uint32_t i) { return i == 0 ? at : base + i; };
+  tree.nodes.resize(tree.nodes.size() + seen_by_light->nodes.size() - 1);
+  for (std::uint32_t i = 0; i < seen_by_light->nodes.size(); ++i) {
+    LookNode node = seen_by_light->nodes[i];
+    if (node.kind == LookNode::Kind::sign) {
+      node.negative = place(node.negative);
+      node.positive = place(node.positive);
+      tree.nodes[place(i)] = node;
+      continue;
+    }
+    LookNode end = surface;
+    if (node.kind != LookNode::Kind::unknown) {
+      const bool reached =
+          node.kind == LookNode::Kind::nothing || node.seen.surface == surface.seen.surface;
+      end.lit_known |= bit;
+      end.lit |= reached ? bit : 0;
+    }
+    tree.nodes[place(i)] = end;
+    ends.push_back(place(i));
+  }
+}
+
+}  // namespace
+
+bool ShadowLooker::add_shadows(LookTree& tree, const Rect& rect, ShadowLists& lists,
+                               std::uint64_t& regions) const {
+  if (!(reach_ > 0) || !std::isfinite(reach_)) return true;
+  bool complete = true;
+  std::vector<std::uint32_t> surfaces;
+  for (std::uint32_t i = 0; i < tree.nodes.size(); ++i) {
+    const LookNode& node = tree.nodes[i];
+    if (node.kind == LookNode::Kind::surface && node.seen.surface.is_plane()) surfaces.push_back(i);
+  }
+  for (std::uint32_t light = 0; light < lights_.size(); ++light) {
+    std::vector<std::uint32_t> ends;
+    std::vector<Placed> looks;  // one for each plane, however often it is seen
+    for (const std::uint32_t node : surfaces) {
+      const BeamSurface surface = tree.nodes[node].seen.surface;
+      auto known = std::ranges::find_if(looks, [&](const Placed& p) {
+        return p.lit.solid == surface.solid && p.lit.plane == surface.index;
+      });
+      if (known == looks.end()) {
+        const LitPlane lit{surface.solid, surface.index};
+        looks.push_back({lit, look_from_light(lit, light, rect, lists)});
+        known = looks.end() - 1;
+        ++regions;
+        complete = complete && (!known->seen_by_light || known->seen_by_light->complete);
+      }
+      splice(tree, node, 1U << light, known->seen_by_light, ends);
+    }
+    surfaces = std::move(ends);
+  }
+  return complete;
+}
+
+namespace {
+
+// A leaf that ends at the plane and lies behind it is not in the light's way.
+bool is_behind(const PlacedLeaf& leaf, std::uint32_t plane, Sign light_side) {
+  const auto& convex = std::get<ConvexLeaf>(leaf.shape);
+  return std::ranges::any_of(convex.planes, [&](PlaneRef ref) {
+    return ref.plane == plane && (light_side == Sign::positive) == !ref.flipped;
+  });
+}
+
+}  // namespace
+
+const ShadowLists::List& ShadowLooker::list_for(LitPlane lit, std::uint32_t light,
+                                                ShadowLists& lists) const {
+  const ShadowLists::Key key{light, lit.solid, lit.plane};
+  const auto known = lists.lists_.find(key);
+  if (known != lists.lists_.end()) return known->second;
+  ShadowLists::List list{BeamView(solids_, eye_, lit, lights_[light], reach_), {}};
+  const Sign light_side = side_of_light(lit, light);
+  std::vector<BeamPart> roots;
+  for (std::uint32_t i = 0; i < solids_.size(); ++i) {
+    const CsgSolid& solid = *solids_[i].solid;
+    CsgExpression root = solid.root();
+    if (i == lit.solid && !root.is_decided()) {
+      std::vector<Cover> covers;
+      for (const std::uint32_t leaf : root.leaves()) {
+        covers.push_back(is_behind(solid.leaf(leaf), lit.plane, light_side) ? Cover::out
+                                                                            : Cover::on);
+      }
+      root = root.prune(covers);
+    }
+    if (!root.is_decided()) roots.push_back({i, std::move(root)});
+  }
+  const double end = depth_of(list.view.plane(lit.solid, lit.plane), lists.tile_);
+  list.parts = prune_parts(list.view, roots, lists.tile_, end);
+  return lists.lists_.emplace(key, std::move(list)).first->second;
+}
+
+Sign ShadowLooker::side_of_light(LitPlane lit, std::uint32_t light) const {
+  const BeamSolid& solid = solids_[lit.solid];
+  const CsgPlane& plane = solid.solid->surfaces().planes()[lit.plane];
+  const LightPlace& place = lights_[light];
+  if (!place.is_directional) {
+    return side_of(plane, transform_point(solid.object_from_world, place.position));
+  }
+  return -sign_of(dot(plane.normal, transform_vector(solid.object_from_world, place.direction)));
+}
+
+std::optional<LookTree> ShadowLooker::look_from_light(LitPlane lit, std::uint32_t light,
+                                                      const Rect& rect, ShadowLists& lists) const {
+  const BeamSolid& solid = solids_[lit.solid];
+  const CsgPlane& plane = solid.solid->surfaces().planes()[lit.plane];
+  const Sign eye_side = side_of(plane, transform_point(solid.object_from_world, eye_.position));
+  if (eye_side * side_of_light(lit, light) != Sign::positive) return std::nullopt;
+  const ShadowLists::List& list = list_for(lit, light, lists);
+  const double end = depth_of(list.view.plane(lit.solid, lit.plane), rect);
+  const std::vector<BeamPart> parts = prune_parts(list.view, list.parts, rect, end);
+  if (parts.empty()) return LookTree{{LookNode{}}, {}, true, end};  // nothing in the way
+  return look(list.view, parts, rect, end, {.only = lit});
+}
+
+}  // namespace arris

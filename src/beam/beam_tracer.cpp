@@ -1,0 +1,304 @@
+#include "beam/beam_tracer.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <string>
+
+#include "base/parallel_for.h"
+
+namespace arris {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+// How often a pixel's outlines are followed again, each time four times as closely.
+constexpr int kCloserLooks = 4;
+
+struct LeafName {
+  const char* operator()(const ConvexLeaf&) const { return nullptr; }
+  const char* operator()(const TorusLeaf&) const { return "torus"; }
+  const char* operator()(const PrismLeaf&) const { return "extrusion"; }
+  const char* operator()(const RevolutionLeaf&) const { return "solid of revolution"; }
+  const char* operator()(const MeshLeaf&) const { return "polyhedron that is not convex"; }
+  const char* operator()(const RoundedLeaf&) const { return "rounded polyhedron"; }
+};
+
+std::array<Rect, 4> quarters_of(const Rect& r) {
+  const double x = r.middle_x(), y = r.middle_y();
+  return {Rect{r.x0, r.y0, x, y}, Rect{x, r.y0, r.x1, y}, Rect{r.x0, y, x, r.y1},
+          Rect{x, y, r.x1, r.y1}};
+}
+
+}  // namespace
+
+void BeamStats::add(const BeamStats& other) {
+  regions += other.regions;
+  rays += other.rays;
+  pixels += other.pixels;
+  uncertified_pixels += other.uncertified_pixels;
+  certified_area += other.certified_area;
+}
+
+std::optional<std::string> find_unsupported_leaf(const CsgSolid& solid) {
+  for (const std::uint32_t leaf : solid.root().leaves()) {
+    if (const char* name = std::visit(LeafName{}, solid.leaf(leaf).shape)) {
+      return "leaf " + std::to_string(leaf) + " (" + name + ")";
+    }
+  }
+  return std::nullopt;
+}
+
+// One tile under way.
+class BeamTracer::Tracer {
+ public:
+  Tracer(const BeamTracer& shared, const Rect& tile,
+         const std::function<void(const BeamPixel&)>& sink)
+      : shared_(shared), sink_(sink), lists_(tile) {}
+
+  // Of at least a pixel.
+  void visit(const Rect& rect, const std::vector<BeamPart>& above, double depth_end) {
+    if (rect.x0 >= shared_.width_px_ || rect.y0 >= shared_.height_px_) return;
+    const std::vector<BeamPart> parts = prune_parts(shared_.view_, above, rect, depth_end);
+    ++stats_.regions;
+    LookTree tree = look(shared_.view_, parts, rect, depth_end);
+    const double next_end = std::min(depth_end, tree.depth_end);
+    if (tree.complete && add_shadows(tree, rect)) {
+      for (double y = rect.y0; y < rect.y1; ++y) {
+        for (double x = rect.x0; x < rect.x1; ++x) add_pixel(tree, {x, y, x + 1, y + 1});
+      }
+    } else if (rect.width() > 1) {
+      for (const Rect& part : quarters_of(rect)) visit(part, parts, next_end);
+    } else {
+      surfaces_.clear();
+      for (const Rect& part : quarters_of(rect)) visit_part(part, parts, next_end);
+      finish_pixel(rect);
+    }
+  }
+
+  [[nodiscard]] const BeamStats& stats() const { return stats_; }
+
+ private:
+  // Of less than a pixel.
+  void visit_part(const Rect& rect, const std::vector<BeamPart>& above, double depth_end) {
+    const std::vector<BeamPart> parts = prune_parts(shared_.view_, above, rect, depth_end);
+    ++stats_.regions;
+    LookTree tree = look(shared_.view_, parts, rect, depth_end);
+    const bool smallest = rect.width() <= shared_.options_.least_region;
+    const bool complete = (tree.complete || smallest) && add_shadows(tree, rect);
+    if (complete || smallest) {
+      add_ends(tree, areas_of(tree, rect), parts);
+      return;
+    }
+    for (const Rect& part : quarters_of(rect)) {
+      visit_part(part, parts, std::min(depth_end, tree.depth_end));
+    }
+  }
+
+  bool add_shadows(LookTree& tree, const Rect& rect) {
+    return shared_.shadows_.add_shadows(tree, rect, lists_, stats_.regions);
+  }
+
+  void add_pixel(const LookTree& tree, const Rect& pixel) {
+    if (pixel.x0 >= shared_.width_px_ || pixel.y0 >= shared_.height_px_) return;
+    AreaOptions options;
+    for (int i = 0; i <= kCloserLooks; ++i) {
+      surfaces_.clear();
+      add_ends(tree, areas_of(tree, pixel, options), {});
+      if (is_certified()) break;
+      options.tolerance /= 4;
+      options.least_side /= 4;
+    }
+    finish_pixel(pixel);
+  }
+
+  [[nodiscard]] bool is_certified() const {
+    return std::ranges::all_of(surfaces_, [&](const PixelSurface& s) {
+      return s.hi - s.lo <= shared_.options_.tolerance;
+    });
+  }
+
+  void add_ends(const LookTree& tree, const std::vector<EndArea>& ends,
+                const std::vector<BeamPart>& parts) {
+    for (const EndArea& end : ends) {
+      const LookNode& node = tree.nodes[end.node];
+      if (node.kind == LookNode::Kind::unknown) {
+        add_unknown(tree, node, end, parts);
+        continue;
+      }
+      PixelSurface surface;
+      if (node.kind == LookNode::Kind::surface) surface.seen = node.seen;
+      surface.lit = node.lit;
+      surface.lit_known = node.lit_known;
+      surface.lo = end.lo;
+      surface.hi = end.hi;
+      surface.estimate = end.estimate;
+      surface.sample = end.sample;
+      surface.sample_weight = end.estimate;
+      const bool is_curved = node.kind == LookNode::Kind::surface && !node.seen.surface.is_plane();
+      if (is_curved && end.lo < 1) surface.samples = end.samples;
+      add(surface);
+    }
+  }
+
+  // Anything in the window may be seen, or nothing; a ray says what to take for it.
+  void add_unknown(const LookTree& tree, const LookNode& node, const EndArea& end,
+                   const std::vector<BeamPart>& parts) {
+    PixelSurface open;
+    open.hi = end.hi;
+    open.sample = end.sample;
+    open.sample_weight = 0;
+    add(open);
+    for (std::uint32_t i = 0; i < node.count; ++i) {
+      open.seen = tree.candidates[node.first + i];
+      add(open);
+    }
+    if (node.count == 0) {
+      for (const BeamPart& part : parts) add_all_faces(part, open);
+    }
+    ++stats_.rays;
+    open.seen = seen_by_ray(parts, end.sample);
+    open.hi = 0;
+    open.estimate = open.sample_weight = end.estimate;
+    add(open);
+  }
+
+  void add_all_faces(const BeamPart& part, PixelSurface open) {
+    for (const std::uint32_t leaf : part.expression.leaves()) {
+      const auto& convex = std::get<ConvexLeaf>(shared_.view_.solid(part.solid).leaf(leaf).shape);
+      const std::size_t faces = convex.planes.size() + (convex.quadric ? 1 : 0);
+      for (std::uint32_t face = 0; face < faces; ++face) {
+        for (const bool entering : {true, false}) {
+          open.seen = SeenSurface{part.solid, leaf, face, {}, entering};
+          add(open);
+        }
+      }
+    }
+  }
+
+  [[nodiscard]] std::optional<SeenSurface> seen_by_ray(const std::vector<BeamPart>& parts,
+                                                       Vec2d at) const {
+    const EyeRays& eye = shared_.eye_;
+    const Vec3d direction = eye.corner + eye.step_x * at.x + eye.step_y * at.y;
+    thread_local BoundarySearch search;
+    std::optional<SeenSurface> seen;
+    double nearest = kInfinity;
+    for (const BeamPart& part : parts) {
+      const BeamSolid& solid = shared_.solids_[part.solid];
+      const Ray ray{transform_point(solid.object_from_world, eye.position),
+                    transform_vector(solid.object_from_world, direction)};
+      for (const CsgBoundary& b : search.find(*solid.solid, view_of(part.expression), ray)) {
+        if (b.t <= 0) continue;
+        if (b.t < nearest) {
+          nearest = b.t;
+          seen = SeenSurface{part.solid, b.leaf, b.face, {}, b.entering};
+        }
+        break;
+      }
+    }
+    return seen;
+  }
+
+  static bool same(const PixelSurface& a, const PixelSurface& b) {
+    if (a.seen.has_value() != b.seen.has_value() || a.lit != b.lit || a.lit_known != b.lit_known) {
+      return false;
+    }
+    return !a.seen || (a.seen->solid == b.seen->solid && a.seen->leaf == b.seen->leaf &&
+                       a.seen->face == b.seen->face && a.seen->entering == b.seen->entering);
+  }
+
+  void add(const PixelSurface& surface) {
+    for (PixelSurface& known : surfaces_) {
+      if (!same(known, surface)) continue;
+      known.lo += surface.lo;
+      known.hi += surface.hi;
+      known.estimate += surface.estimate;
+      known.samples.insert(known.samples.end(), surface.samples.begin(), surface.samples.end());
+      if (surface.sample_weight > known.sample_weight) {
+        known.sample = surface.sample;
+        known.sample_weight = surface.sample_weight;
+      }
+      return;
+    }
+    surfaces_.push_back(surface);
+  }
+
+  void finish_pixel(const Rect& pixel) {
+    BeamPixel out;
+    out.x = int(pixel.x0);
+    out.y = int(pixel.y0);
+    double nothing_lo = 0, nothing_hi = 0, certain = 0;
+    for (PixelSurface& s : surfaces_) {
+      s.lo = std::clamp(s.lo, 0.0, 1.0);
+      s.hi = std::clamp(s.hi, 0.0, 1.0);
+      certain += s.lo;
+      if (s.seen) continue;
+      nothing_lo += s.lo;
+      nothing_hi += s.hi;
+    }
+    out.coverage_lo = std::clamp(1 - nothing_hi, 0.0, 1.0);
+    out.coverage_hi = std::clamp(1 - nothing_lo, 0.0, 1.0);
+    out.certified = is_certified();
+    out.surfaces = surfaces_;
+    ++stats_.pixels;
+    stats_.uncertified_pixels += out.certified ? 0 : 1;
+    stats_.certified_area += std::min(certain, 1.0);
+    sink_(out);
+  }
+
+  const BeamTracer& shared_;
+  const std::function<void(const BeamPixel&)>& sink_;
+  ShadowLists lists_;
+  std::vector<PixelSurface> surfaces_;
+  BeamStats stats_;
+};
+
+BeamTracer::BeamTracer(std::span<const BeamSolid> solids, const EyeRays& eye, int width_px,
+                       int height_px, const BeamOptions& options,
+                       std::span<const LightPlace> lights)
+    : solids_(solids),
+      eye_(eye),
+      width_px_(width_px),
+      height_px_(height_px),
+      options_(options),
+      view_(solids, eye),
+      shadows_(solids, eye, lights) {}
+
+std::vector<BeamTile> BeamTracer::make_tiles() const {
+  BeamTile whole;
+  double side = options_.tile_px;
+  while (side < std::max(width_px_, height_px_)) side *= 2;
+  whole.rect = {0, 0, side, side};
+  for (std::uint32_t i = 0; i < solids_.size(); ++i) {
+    const CsgExpression& root = solids_[i].solid->root();
+    if (!root.is_decided()) whole.parts.push_back({i, root});
+  }
+  std::vector<BeamTile> level{std::move(whole)};
+  for (; side > options_.tile_px; side /= 2) {
+    std::vector<BeamTile> next;
+    for (const BeamTile& tile : level) {
+      for (const Rect& rect : quarters_of(tile.rect)) {
+        if (rect.x0 < width_px_ && rect.y0 < height_px_) next.push_back({rect, {}});
+      }
+    }
+    parallel_for(next.size(), {.threads = options_.threads}, [&](std::size_t i) {
+      const Rect& r = next[i].rect;
+      const auto parent = std::ranges::find_if(level, [&](const BeamTile& t) {
+        return t.rect.x0 <= r.x0 && t.rect.x1 >= r.x1 && t.rect.y0 <= r.y0 && t.rect.y1 >= r.y1;
+      });
+      next[i].parts = prune_parts(view_, parent->parts, r, kInfinity);
+    });
+    level = std::move(next);
+  }
+  return level;
+}
+
+BeamStats BeamTracer::trace_tile(const BeamTile& tile,
+                                 const std::function<void(const BeamPixel&)>& sink) const {
+  Tracer tracer(*this, tile.rect, sink);
+  tracer.visit(tile.rect, tile.parts, kInfinity);
+  return tracer.stats();
+}
+
+}  // namespace arris

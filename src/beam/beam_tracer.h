@@ -1,0 +1,96 @@
+// beam_tracer.h — which surfaces each pixel of a picture shows, and how much of each
+// What       The picture is split in four until a region's beam sees a tree of few signs (region_look.h); the tree's
+//            ends are measured in each pixel (tree_area.h). Regions hand the leaves that their beams may meet, and the
+//            depth beyond which nothing is seen, to their parts. What is still unknown in the smallest regions is
+//            sampled by a ray and left open between its bounds.
+// Guarantee  the area of every surface in every pixel lies within its [lo, hi]; a surface that is not listed is not
+//            there. Both but for rounding in the sums of areas (tests/beam/beam_tracer_test.cpp: dense sampling)
+// Limits     leaves of planes and at most one quadric; find_unsupported_leaf() names the first other
+// Cost       parallel over tiles; the same pixels at any number of threads
+// Source     J.-M. Hasenfratz and D. Ghazanfarpour, "Rendering CSG scenes with general antialiasing", 1996: regions,
+//            beams and lists handed down; where corners decide there, bounds decide here (docs/beam.md)
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "beam/beam_shadow.h"
+#include "beam/beam_view.h"
+#include "beam/region_look.h"
+#include "beam/tree_area.h"
+
+namespace arris {
+
+// What a pixel shows; nothing: what is behind all solids.
+struct PixelSurface {
+  std::optional<SeenSurface> seen;
+  std::uint32_t lit = 0, lit_known = 0;  // by light; see beam_shadow.h
+  double lo = 0, hi = 0, estimate = 0;   // parts of the pixel; estimates add up to 1
+  Vec2d sample;                          // a point of the picture where it is seen, or may be
+  double sample_weight = -1;             // the area that the sample stands for
+  std::vector<AreaSample> samples;       // more of them, of curved surfaces
+};
+
+struct BeamPixel {
+  int x = 0, y = 0;
+  std::span<const PixelSurface> surfaces;
+  double coverage_lo = 0, coverage_hi = 1;  // of all surfaces together
+  bool certified = true;                    // no surface's bounds are wider than the tolerance
+};
+
+struct BeamStats {
+  std::uint64_t regions = 0;  // beams that were looked at
+  std::uint64_t rays = 0;     // that sampled what stayed unknown
+  std::uint64_t pixels = 0, uncertified_pixels = 0;
+  double certified_area = 0;  // in pixels
+
+  void add(const BeamStats& other);
+};
+
+struct BeamOptions {
+  double tolerance = 1.0 / 512;    // of hi - lo
+  double least_region = 1.0 / 64;  // of a pixel's side
+  int tile_px = 16;                // a power of two
+  int threads = 0;                 // 0: all
+};
+
+struct BeamTile {
+  Rect rect;
+  std::vector<BeamPart> parts;
+};
+
+// "leaf 3 (torus)", if there is one.
+std::optional<std::string> find_unsupported_leaf(const CsgSolid& solid);
+
+class BeamTracer {
+ public:
+  // `solids` must outlive the tracer. Precondition: only supported leaves.
+  // The lights whose shadows are looked for.
+  BeamTracer(std::span<const BeamSolid> solids, const EyeRays& eye, int width_px, int height_px,
+             const BeamOptions& options = {}, std::span<const LightPlace> lights = {});
+
+  // Together they are the picture.
+  [[nodiscard]] std::vector<BeamTile> make_tiles() const;
+  // Calls sink for every pixel of the tile.
+  BeamStats trace_tile(const BeamTile& tile,
+                       const std::function<void(const BeamPixel&)>& sink) const;
+
+  [[nodiscard]] const BeamView& view() const { return view_; }
+  [[nodiscard]] const EyeRays& eye() const { return eye_; }
+
+ private:
+  class Tracer;
+
+  std::span<const BeamSolid> solids_;
+  EyeRays eye_;
+  int width_px_, height_px_;
+  BeamOptions options_;
+  BeamView view_;
+  ShadowLooker shadows_;
+};
+
+}  // namespace arris

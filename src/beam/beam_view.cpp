@@ -1,0 +1,296 @@
+#include "beam/beam_view.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace arris {
+namespace {
+
+// c + x·sx + y·sy
+LinearVec make_linear(const Vec3i& c, const Vec3i& sx, const Vec3i& sy) {
+  return {{c.x, sx.x, sy.x}, {c.y, sx.y, sy.y}, {c.z, sx.z, sy.z}};
+}
+Linear dot(Vec3d n, const LinearVec& v) {
+  return v.x * Interval(n.x) + v.y * Interval(n.y) + v.z * Interval(n.z);
+}
+LinearVec map_linear(const Mat3d& m, const LinearVec& v) {
+  const Mat3d rows = transpose(m);
+  return {dot(rows.x, v), dot(rows.y, v), dot(rows.z, v)};
+}
+LinearVec add_scaled(const LinearVec& a, const Linear& weight, Vec3d v) {
+  return {a.x + weight * Interval(v.x), a.y + weight * Interval(v.y), a.z + weight * Interval(v.z)};
+}
+// Of a polynomial that is known to be constant.
+Linear scaled(const Linear& a, const Linear& only_constant) {
+  return a * only_constant.c;
+}
+
+// The discriminant of a cylinder is a product. With × in the plane across its axis, and w the weight:
+// Direction fixed: w² d² - (o×d)² = (w |d| - o×d) (w |d| + o×d).
+// Origin fixed: o² times it is (o·d)² - k² (o×d)², k² = o² - 1; before the eye o·d < 0, so both -o·d ± k o×d are
+// positive where the ray hits.
+void add_tangents(QuadricForm& form, const LinearVec& o, const LinearVec& d,
+                  const ViewFrame& frame) {
+  Linear middle, side;
+  if (frame.direction_fixed) {
+    middle = frame.weight * square_root(square(d.x.c) + square(d.y.c));
+    side = scaled(o.x, d.y) - scaled(o.y, d.x);
+  } else {
+    const Interval squared_k = square(o.x.c) + square(o.y.c) - Interval(1);
+    if (!(squared_k.lo > 0)) return;
+    middle = -form.half_slope;
+    side = (scaled(d.y, o.x) - scaled(d.x, o.y)) * square_root(squared_k);
+  }
+  form.has_tangents = true;
+  form.tangents[0] = middle - side;
+  form.tangents[1] = middle + side;
+}
+
+}  // namespace
+
+PlaneForm make_form(const ViewFrame& frame, const CsgPlane& plane) {
+  return {dot(plane.normal, frame.origin) - frame.weight * Interval(plane.d),
+          dot(plane.normal, frame.direction)};
+}
+
+// One of origin and direction is constant, so no product has a degree above 2.
+QuadricForm make_form(const ViewFrame& frame, const CsgQuadric& quadric) {
+  const Affine3d& m = quadric.unit_from_object;
+  const Vec3d w = weights_of(quadric.form);
+  const LinearVec o = add_scaled(map_linear(m.linear, frame.origin), frame.weight, m.translation);
+  const LinearVec d = map_linear(m.linear, frame.direction);
+  const bool fixed = frame.direction_fixed;
+  const auto times = [fixed](const Linear& of_o, const Linear& of_d) {
+    return fixed ? scaled(of_o, of_d) : scaled(of_d, of_o);
+  };
+  QuadricForm form;
+  form.value = squared(o.x) * Interval(w.x) + squared(o.y) * Interval(w.y) +
+               squared(o.z) * Interval(w.z) -
+               squared(frame.weight) * Interval(constant_of(quadric.form));
+  form.curvature =
+      squared(d.x) * Interval(w.x) + squared(d.y) * Interval(w.y) + squared(d.z) * Interval(w.z);
+  form.half_slope = times(o.x, d.x) * Interval(w.x) + times(o.y, d.y) * Interval(w.y) +
+                    times(o.z, d.z) * Interval(w.z);
+  form.discriminant = squared(form.half_slope) -
+                      (fixed ? form.value * form.curvature.c : form.curvature * form.value.c);
+  form.along = o.z;
+  if (quadric.form == CsgQuadric::Form::cylinder) add_tangents(form, o, d, frame);
+  return form;
+}
+
+ViewFrame make_eye_frame(const EyeRays& eye, const BeamSolid& solid) {
+  const Affine3d& m = solid.object_from_world;
+  ViewFrame frame;
+  const Vec3i origin =
+      map_vector(m.linear, to_intervals(eye.position)) + to_intervals(m.translation);
+  frame.origin = make_linear(origin, Vec3i(0), Vec3i(0));
+  frame.direction = make_linear(map_vector(m.linear, to_intervals(eye.corner)),
+                                map_vector(m.linear, to_intervals(eye.step_x)),
+                                map_vector(m.linear, to_intervals(eye.step_y)));
+  return frame;
+}
+
+// a: -ha / sa, b: -hb / sb; their difference times sa sb.
+Quadratic plane_before_plane(const PlaneForm& a, const PlaneForm& b, bool direction_fixed) {
+  if (direction_fixed) return Quadratic(scaled(b.height, a.slope) - scaled(a.height, b.slope));
+  return Quadratic(scaled(a.slope, b.height) - scaled(b.slope, a.height));
+}
+
+// value + 2 t half_slope + t² curvature at t = -h / s, times s².
+Quadratic quadric_at_plane(const QuadricForm& q, const PlaneForm& p, bool direction_fixed) {
+  if (direction_fixed) {
+    const Interval s = p.slope.c;
+    return q.value * square(s) - (p.height * q.half_slope) * (Interval(2) * s) +
+           squared(p.height) * q.curvature.c;
+  }
+  const Interval h = p.height.c;
+  return squared(p.slope) * q.value.c - (p.slope * q.half_slope) * (Interval(2) * h) +
+         q.curvature * square(h);
+}
+
+// -h / s + half_slope / curvature, times s · curvature.
+Quadratic plane_beyond_middle(const QuadricForm& q, const PlaneForm& p, bool direction_fixed) {
+  if (direction_fixed) {
+    return Quadratic(q.half_slope * p.slope.c - p.height * q.curvature.c);
+  }
+  return p.slope * q.half_slope - q.curvature * p.height.c;
+}
+
+namespace {
+
+// A point of the lit plane is (origin · weight + direction · far) / weight, where weight = |slope|, far = |height| of
+// the lit plane in the eye's view: both polynomials of first degree, the second one constant.
+struct LitPoints {
+  Linear weight;
+  Interval far;
+};
+
+LitPoints make_lit_points(const PlaneForm& lit) {
+  const bool above = lit.height.c.lo > 0;
+  return above ? LitPoints{-lit.slope, lit.height.c} : LitPoints{lit.slope, -lit.height.c};
+}
+
+// In the space of the solid. Precondition: `lit` seen from the eye.
+ViewFrame make_light_frame(const EyeRays& eye, const BeamSolid& solid, const LitPoints& lit,
+                           const LightPlace& light, double reach) {
+  const ViewFrame seen = make_eye_frame(eye, solid);
+  const Vec3i eye_at{seen.origin.x.c, seen.origin.y.c, seen.origin.z.c};
+  const auto lit_axis = [&](Interval origin, const Linear& direction) {
+    return lit.weight * origin + direction * lit.far;
+  };
+  const LinearVec point{lit_axis(eye_at.x, seen.direction.x), lit_axis(eye_at.y, seen.direction.y),
+                        lit_axis(eye_at.z, seen.direction.z)};
+  const Affine3d& m = solid.object_from_world;
+  ViewFrame frame;
+  if (light.is_directional) {
+    const Vec3d travels = light.direction * (1 / length(light.direction));
+    const Vec3i d = map_vector(m.linear, to_intervals(travels));
+    const Interval back(-reach);
+    frame.direction = make_linear(d, Vec3i(0), Vec3i(0));
+    frame.origin = {point.x + lit.weight * (d.x * back), point.y + lit.weight * (d.y * back),
+                    point.z + lit.weight * (d.z * back)};
+    frame.weight = lit.weight;
+    frame.direction_fixed = true;
+    return frame;
+  }
+  const Vec3i at = map_vector(m.linear, to_intervals(light.position)) + to_intervals(m.translation);
+  frame.origin = make_linear(at, Vec3i(0), Vec3i(0));
+  frame.direction = {point.x - lit.weight * at.x, point.y - lit.weight * at.y,
+                     point.z - lit.weight * at.z};
+  return frame;
+}
+
+// Picture point (x, y) and depth of a world point: linear · (p - position) = (x, y, 1) · depth.
+Mat3d make_picture_map(const EyeRays& eye) {
+  return inverse(Mat3d{eye.step_x, eye.step_y, eye.corner});
+}
+
+// a bᵀ
+Mat3d outer(Vec3d a, Vec3d b) {
+  return {a * b.x, a * b.y, a * b.z};
+}
+Mat3d scaled(const Mat3d& m, double s) {
+  return {m.x * s, m.y * s, m.z * s};
+}
+Mat3d sum(const Mat3d& a, const Mat3d& b) {
+  return {a.x + b.x, a.y + b.y, a.z + b.z};
+}
+
+struct HomogeneousMap {
+  Mat3d linear;
+  Vec3d offset;
+};
+
+// Weight · (shadow on the plane - eye) in the picture, linear in the point that casts it. Weights are positive between
+// the light and the plane.
+HomogeneousMap make_shadow_map(const EyeRays& eye, Vec3d normal, double d,
+                               const LightPlace& light) {
+  const Mat3d picture = make_picture_map(eye);
+  if (light.is_directional) {
+    // s = p + direction (d - n·p) / (n·direction)
+    const double slope = dot(normal, light.direction);
+    const double sign = slope < 0 ? -1 : 1;
+    const Mat3d one{};
+    const Mat3d linear = sum(scaled(one, slope), scaled(outer(light.direction, normal), -1));
+    const Vec3d offset = light.direction * d - eye.position * slope;
+    return {scaled(picture * linear, sign), picture * offset * sign};
+  }
+  // s = l + (p - l) (d - n·l) / (n·(p - l))
+  const Vec3d l = light.position;
+  const double across = d - dot(normal, l), sign = across < 0 ? -1 : 1;
+  const Mat3d linear = sum(outer(l - eye.position, normal), scaled(Mat3d{}, across));
+  return {scaled(picture * linear, sign), picture * (-(linear * l)) * sign};
+}
+
+}  // namespace
+
+// Boxes and maps are rounded: their outlines give way by this part of a coordinate, and this part of a pixel.
+constexpr double kWindowMargin = 1e-7;
+
+LeafWindow BeamView::make_window(std::uint32_t solid, std::uint32_t leaf) const {
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  const LeafWindow everywhere{-kInfinity, -kInfinity, kInfinity, kInfinity};
+  const Box3d& box = this->solid(solid).leaf(leaf).bounds;
+  if (!is_finite(box.low) || !is_finite(box.high)) return everywhere;
+  const Projection& map = projections_[solid];
+  LeafWindow window{kInfinity, kInfinity, -kInfinity, -kInfinity};
+  for (int i = 0; i < 8; ++i) {
+    const Vec3d p{(i & 1) != 0 ? box.high.x : box.low.x, (i & 2) != 0 ? box.high.y : box.low.y,
+                  (i & 4) != 0 ? box.high.z : box.low.z};
+    const Vec3d q = map.linear * p + map.offset;
+    const Vec3d size = {length(map.linear.x), length(map.linear.y), length(map.linear.z)};
+    const double scale = std::abs(map.offset.z) + length(size) * length(p);
+    if (!(q.z > kWindowMargin * scale)) return everywhere;
+    const double x = q.x / q.z, y = q.y / q.z;
+    const double slack = kWindowMargin * (1 + std::abs(x) + std::abs(y)) * (1 + scale / q.z * 1e-6);
+    window = {std::min(window.x0, x - slack), std::min(window.y0, y - slack),
+              std::max(window.x1, x + slack), std::max(window.y1, y + slack)};
+  }
+  return window;
+}
+
+const PlaneForm& BeamView::remembered_plane(std::uint32_t solid, std::uint32_t index) const {
+  const std::uint64_t key = std::uint64_t(solid) << 32U | index;
+  const auto known = asked_planes_.find(key);
+  if (known != asked_planes_.end()) return known->second;
+  const CsgPlane& plane = this->solid(solid).surfaces().planes()[index];
+  return asked_planes_.emplace(key, make_form(frames_[solid], plane)).first->second;
+}
+
+const QuadricForm& BeamView::remembered_quadric(std::uint32_t solid, std::uint32_t index) const {
+  const std::uint64_t key = std::uint64_t(solid) << 32U | index;
+  const auto known = asked_quadrics_.find(key);
+  if (known != asked_quadrics_.end()) return known->second;
+  const CsgQuadric& quadric = this->solid(solid).surfaces().quadrics()[index];
+  return asked_quadrics_.emplace(key, make_form(frames_[solid], quadric)).first->second;
+}
+
+BeamView::BeamView(std::span<const BeamSolid> solids, const EyeRays& eye) : solids_(solids) {
+  const Mat3d picture = make_picture_map(eye);
+  for (std::uint32_t i = 0; i < solids.size(); ++i) {
+    const BeamSolid& solid = solids[i];
+    const ViewFrame frame = make_eye_frame(eye, solid);
+    std::vector<PlaneForm>& planes = planes_.emplace_back();
+    for (const CsgPlane& plane : solid.solid->surfaces().planes()) {
+      planes.push_back(make_form(frame, plane));
+    }
+    std::vector<QuadricForm>& quadrics = quadrics_.emplace_back();
+    for (const CsgQuadric& quadric : solid.solid->surfaces().quadrics()) {
+      quadrics.push_back(make_form(frame, quadric));
+    }
+    frames_.push_back(frame);
+    const Affine3d world_from_object = inverse(solid.object_from_world);
+    projections_.push_back({picture * world_from_object.linear,
+                            picture * (world_from_object.translation - eye.position)});
+  }
+  std::vector<std::vector<LeafWindow>> windows;
+  for (std::uint32_t i = 0; i < solids.size(); ++i) {
+    std::vector<LeafWindow>& of_solid = windows.emplace_back(this->solid(i).leaf_count());
+    for (const std::uint32_t leaf : this->solid(i).root().leaves()) {
+      of_solid[leaf] = make_window(i, leaf);
+    }
+  }
+  windows_ = std::move(windows);
+}
+
+BeamView::BeamView(std::span<const BeamSolid> solids, const EyeRays& eye, LitPlane lit,
+                   const LightPlace& light, double reach)
+    : solids_(solids) {
+  const BeamSolid& of = solids[lit.solid];
+  const CsgPlane& lit_plane = of.solid->surfaces().planes()[lit.plane];
+  const PlaneForm plane = make_form(make_eye_frame(eye, of), lit_plane);
+  const LitPoints points = make_lit_points(plane);
+  // The plane in the world: its normal goes with the transpose of the map into the solid's space.
+  const Vec3d normal = transpose(of.object_from_world.linear) * lit_plane.normal;
+  const double d = lit_plane.d - dot(lit_plane.normal, of.object_from_world.translation);
+  const HomogeneousMap shadow = make_shadow_map(eye, normal, d, light);
+  for (const BeamSolid& solid : solids) {
+    frames_.push_back(make_light_frame(eye, solid, points, light, reach));
+    const Affine3d world_from_object = inverse(solid.object_from_world);
+    projections_.push_back({shadow.linear * world_from_object.linear,
+                            shadow.linear * world_from_object.translation + shadow.offset});
+  }
+}
+
+}  // namespace arris

@@ -1,0 +1,137 @@
+// beam_view.h — planes and quadrics as all rays of a picture see them
+// What       A ray is origin + depth · direction, where the picture's x and y move the one or the other:
+//            Origin fixed (an eye, or a point light): direction is linear in x and y, depth is along the view.
+//            Direction fixed (a directional light): origin / weight moves over the plane that is lit, and depth is in
+//            units of 1 / weight.
+//            Along each ray a plane's height is height + depth · slope, a quadric's value is
+//            value + 2 depth · half_slope + depth² · curvature, with polynomials of x and y that this file makes.
+// Guarantee  every polynomial holds that of real arithmetic on the doubles that describe camera and solids, for kind
+//            eye and either kind of light view but for the rounding of the lit plane (tests/beam/beam_view_test.cpp)
+// Frames     depths are the same in the world and in each solid
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <unordered_map>
+#include <vector>
+
+#include "beam/polynomial.h"
+#include "csg/csg_solid.h"
+
+namespace arris {
+
+using LinearVec = Vec3<Linear>;
+
+// A solid where it stands.
+struct BeamSolid {
+  const CsgSolid* solid = nullptr;
+  Affine3d object_from_world;
+};
+
+// The eye: world rays through picture points, position + depth (corner + x step_x + y step_y).
+struct EyeRays {
+  Vec3d position;
+  Vec3d corner, step_x, step_y;
+};
+
+// Rays in the space of one solid.
+struct ViewFrame {
+  LinearVec origin, direction;
+  Linear weight{1, 0, 0};
+  bool direction_fixed = false;
+};
+
+struct PlaneForm {
+  Linear height, slope;
+};
+struct QuadricForm {
+  Quadratic value, curvature;
+  Linear half_slope;
+  Quadratic discriminant;  // half_slope² - value · curvature: negative where the ray misses
+  // Of a cylinder seen from outside: the planes through the origin, or along the direction, that touch it. Rays that
+  // may meet it are on the positive side of both.
+  bool has_tangents = false;
+  Linear tangents[2];
+  Linear along;  // the origin's z in the quadric's own frame: which half of a double cone it is in
+};
+
+PlaneForm make_form(const ViewFrame& frame, const CsgPlane& plane);
+QuadricForm make_form(const ViewFrame& frame, const CsgQuadric& quadric);
+
+ViewFrame make_eye_frame(const EyeRays& eye, const BeamSolid& solid);
+
+// Signs of these say how two depths along a ray compare; see beam_view.cpp for the derivations.
+// Depth at a minus depth at b, times the slopes of both.
+Quadratic plane_before_plane(const PlaneForm& a, const PlaneForm& b, bool direction_fixed);
+// The quadric's value where the ray meets the plane, times slope².
+Quadratic quadric_at_plane(const QuadricForm& q, const PlaneForm& p, bool direction_fixed);
+// Depth at the plane minus that of the middle between the roots, times slope · curvature.
+Quadratic plane_beyond_middle(const QuadricForm& q, const PlaneForm& p, bool direction_fixed);
+
+// The rays from a light to a plane that the eye sees: picture points are those of the eye's picture.
+struct LitPlane {
+  std::uint32_t solid = 0, plane = 0;
+};
+struct LightPlace {
+  Vec3d position;   // of a point light
+  Vec3d direction;  // in which a directional light travels, any length
+  bool is_directional = false;
+};
+
+// Where a leaf may be in the picture, by its box: much cheaper than its surfaces. For kind light, its shadow on the
+// lit plane.
+struct LeafWindow {
+  double x0 = 0, y0 = 0, x1 = 0, y1 = 0;
+
+  [[nodiscard]] bool meets(const Rect& r) const {
+    return x0 <= r.x1 && x1 >= r.x0 && y0 <= r.y1 && y1 >= r.y0;
+  }
+};
+
+// The surfaces of some solids in one view.
+class BeamView {
+ public:
+  // The eye's: all surfaces are made at once. `solids` must outlive the view.
+  BeamView(std::span<const BeamSolid> solids, const EyeRays& eye);
+  // A light's: surfaces are made whenever they are asked for. `reach`: no solid is farther from another.
+  // Precondition: over the part of the picture that is asked about, the eye's rays meet the plane.
+  BeamView(std::span<const BeamSolid> solids, const EyeRays& eye, LitPlane lit,
+           const LightPlace& light, double reach);
+
+  [[nodiscard]] const CsgSolid& solid(std::uint32_t index) const { return *solids_[index].solid; }
+  [[nodiscard]] std::size_t solid_count() const { return solids_.size(); }
+  [[nodiscard]] bool direction_fixed() const { return frames_[0].direction_fixed; }
+  // Of a leaf in the picture; rays outside miss it.
+  [[nodiscard]] LeafWindow window(std::uint32_t solid, std::uint32_t leaf) const {
+    return windows_.empty() ? make_window(solid, leaf) : windows_[solid][leaf];
+  }
+  // A light's view remembers what it was asked: for one thread at a time.
+  [[nodiscard]] const PlaneForm& plane(std::uint32_t solid, std::uint32_t index) const {
+    return planes_.empty() ? remembered_plane(solid, index) : planes_[solid][index];
+  }
+  [[nodiscard]] const QuadricForm& quadric(std::uint32_t solid, std::uint32_t index) const {
+    return quadrics_.empty() ? remembered_quadric(solid, index) : quadrics_[solid][index];
+  }
+
+ private:
+  // Picture point · weight = a linear map of the world's points, seen from the eye or cast by the light.
+  struct Projection {
+    Mat3d linear;  // rows: x, y, weight
+    Vec3d offset;
+  };
+  [[nodiscard]] LeafWindow make_window(std::uint32_t solid, std::uint32_t leaf) const;
+  [[nodiscard]] const PlaneForm& remembered_plane(std::uint32_t solid, std::uint32_t index) const;
+  [[nodiscard]] const QuadricForm& remembered_quadric(std::uint32_t solid,
+                                                      std::uint32_t index) const;
+
+  std::span<const BeamSolid> solids_;
+  std::vector<ViewFrame> frames_;
+  std::vector<Projection> projections_;  // by solid, from its own space
+  std::vector<std::vector<LeafWindow>> windows_;
+  std::vector<std::vector<PlaneForm>> planes_;
+  std::vector<std::vector<QuadricForm>> quadrics_;
+  mutable std::unordered_map<std::uint64_t, PlaneForm> asked_planes_;
+  mutable std::unordered_map<std::uint64_t, QuadricForm> asked_quadrics_;
+};
+
+}  // namespace arris

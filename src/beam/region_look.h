@@ -1,0 +1,76 @@
+// region_look.h — what all rays through a part of the picture see first
+// What       The certificate: spans of the leaves (leaf_span.h) give the depths in which a leaf is certainly inside or
+//            outside; the tree is evaluated in three-valued logic over the depths, from the front, until it certainly
+//            has changed; the leaves that are left in that window are put in order along the ray. Where an order or a
+//            hit depends on a sign that changes within the rectangle, both ways are followed: the answer is a small
+//            tree of polynomials, whose ends are surfaces.
+// Guarantee  at every point of the rectangle that follows the tree's signs to a surface, the ray meets that surface
+//            first; `nothing` likewise. What could not be decided ends in `unknown`, with all the surfaces that may
+//            be seen there. (tests/beam/region_look_test.cpp)
+// Limits     where two quadrics may be met in either order, the end is unknown: cut the rectangle
+// Cost       one span for each leaf, and again for each sign that is followed both ways
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <vector>
+
+#include "beam/beam_view.h"
+#include "beam/leaf_span.h"
+#include "csg/csg_expression.h"
+
+namespace arris {
+
+// What of a solid is undecided in some beam.
+struct BeamPart {
+  std::uint32_t solid = 0;
+  CsgExpression expression;
+};
+
+// What a ray meets: a face of a leaf (csg_leaf.h), from outside the solid or from inside.
+struct SeenSurface {
+  std::uint32_t solid = 0, leaf = 0, face = 0;
+  BeamSurface surface;
+  bool entering = true;
+
+  friend bool operator==(const SeenSurface&, const SeenSurface&) = default;
+};
+
+struct LookNode {
+  enum class Kind : std::uint8_t { nothing, surface, unknown, sign };
+  Kind kind = Kind::nothing;
+  SeenSurface seen;                          // surface
+  Quadratic polynomial;                      // sign
+  std::uint32_t negative = 0, positive = 0;  // sign: the nodes for either
+  std::uint32_t first = 0, count = 0;        // unknown: of LookTree::candidates
+  std::uint32_t lit = 0;                     // surface: which lights reach it, see beam_shadow.h
+  std::uint32_t lit_known = 0;
+};
+
+struct LookTree {
+  std::vector<LookNode> nodes;  // [root] first in the end: node 0 is the root
+  std::vector<SeenSurface> candidates;
+  bool complete = true;                                        // nothing is unknown
+  double depth_end = std::numeric_limits<double>::infinity();  // no ray sees farther
+};
+
+struct LookOptions {
+  // Set: only whether the rays meet this plane before any surface of `parts`. What they meet before it counts as one
+  // surface, which is no plane, so that its order does not matter. Precondition: every ray meets the plane.
+  std::optional<LitPlane> only;
+  std::uint32_t most_signs = 6;  // followed both ways, one below the other
+  std::uint32_t most_leaves =
+      16;  // more are not looked at: everything is unknown, without candidates
+};
+
+// The leaves that a beam may meet before depth_end: `parts` pruned, decided ones left out.
+std::vector<BeamPart> prune_parts(const BeamView& view, const std::vector<BeamPart>& parts,
+                                  const Rect& rect, double depth_end);
+
+// Precondition: `parts` are undecided and convex leaves only.
+LookTree look(const BeamView& view, const std::vector<BeamPart>& parts, const Rect& rect,
+              double depth_end, const LookOptions& options = {});
+
+}  // namespace arris

@@ -1,0 +1,272 @@
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <cmath>
+#include <mutex>
+
+#include "base/check.h"
+#include "base/flush_denormals.h"
+#include "base/parallel_for.h"
+#include "beam/beam_tracer.h"
+#include "beam/corner_tracer.h"
+#include "csg/csg_cells.h"
+#include "image/picture_sum.h"
+#include "render/beam_shading.h"
+#include "render/camera.h"
+
+namespace arris {
+namespace {
+
+constexpr const char* kCoverageLo = "coverage_lo";
+constexpr const char* kCoverageHi = "coverage_hi";
+constexpr const char* kUncertified = "uncertified";
+
+struct UnsupportedName {
+  const char* operator()(const CsgTorus&) const { return "a torus"; }
+  const char* operator()(const CsgPrism&) const { return "an extrusion"; }
+  const char* operator()(const CsgRevolution&) const { return "a solid of revolution"; }
+  const char* operator()(const CsgMesh&) const { return "a polyhedron that is not convex"; }
+  const char* operator()(const CsgRounded&) const { return "a rounded polyhedron"; }
+  template <class Convex>
+  const char* operator()(const Convex&) const {
+    return nullptr;
+  }
+};
+
+// What all tiles share.
+struct Job {
+  const PreparedScene& scene;
+  const RenderOptions& options;
+  EyeRays eye;
+  PathSettings settings;
+  std::vector<Emitter> emitters;  // point-like
+  bool needs_paths = false;       // there is other light
+};
+
+EyeRays make_eye(const Scene& scene) {
+  const CameraRays rays = make_camera_rays(*scene.camera, scene.image);
+  return {Vec3d(rays.position), rays.corner, rays.step_x, rays.step_y};
+}
+
+std::vector<BeamSolid> make_solids(const SceneGeometry& geometry) {
+  std::vector<BeamSolid> solids;
+  for (const auto& object : geometry.csg.objects) {
+    solids.push_back({&object->cells->solid(), object->object_from_world});
+  }
+  return solids;
+}
+
+// In the order of `emitters`. None where translucent surfaces make shadows of more than two kinds.
+std::vector<LightPlace> make_light_places(const SceneGeometry& geometry,
+                                          const std::vector<Emitter>& emitters) {
+  std::vector<LightPlace> places;
+  if (geometry.any_translucent) return places;
+  for (const Emitter& e : emitters) {
+    LightPlace place;
+    if (e.kind == EmitterKind::directional) {
+      place.is_directional = true;
+      place.direction = -Vec3d(geometry.lights.directionals[e.index].wi);
+    } else if (e.kind == EmitterKind::point) {
+      place.position = Vec3d(geometry.lights.points[e.index].position);
+    } else {
+      place.position = Vec3d(geometry.lights.spots[e.index].position);
+    }
+    places.push_back(place);
+  }
+  return places;
+}
+
+// Anything that lights a surface besides point-like lights, or shows behind it.
+bool needs_paths(const SceneGeometry& geometry, const PathSettings& settings,
+                 std::size_t point_like) {
+  const bool other_lights = geometry.lights.emitters.size() > point_like ||
+                            geometry.lights.environment.kind != EnvironmentKind::constant ||
+                            max_component(geometry.lights.environment.constant) > 0;
+  const bool emits =
+      std::ranges::any_of(geometry.materials, [](const PreparedMaterial& m) { return m.emissive; });
+  return other_lights || emits || geometry.any_translucent || settings.max_depth > 1;
+}
+
+// Samples of a surface that takes `share` of a pixel.
+std::uint32_t sample_count(const Job& job, double share) {
+  const std::uint32_t all = job.options.samples.last - job.options.samples.first;
+  return std::max<std::uint32_t>(1, std::uint32_t(std::lround(all * share)));
+}
+
+// Direct light of a surface: of the point that stands for it, or of several where it is curved.
+Rgb shade_directly(const Job& job, const PixelSurface& surface, const KnownSight& sight,
+                   PathRays& rays) {
+  if (surface.samples.size() < 2) {
+    return direct_light(job.scene, job.emitters, sight, surface, rays);
+  }
+  Rgb sum;
+  double weight = 0;
+  for (const AreaSample& sample : surface.samples) {
+    const KnownSight other = make_sight(job.scene, job.eye, surface, sample.at);
+    sum += direct_light(job.scene, job.emitters, other, surface, rays) * float(sample.weight);
+    weight += sample.weight;
+  }
+  return sum * float(1 / weight);
+}
+
+Rgb shade(const Job& job, const BeamPixel& pixel, const PixelSurface& surface,
+          std::uint32_t& sample, PathRays& rays) {
+  const KnownSight sight = make_sight(job.scene, job.eye, surface, surface.sample);
+  const Rgb direct = shade_directly(job, surface, sight, rays);
+  if (!job.needs_paths) return direct;
+  Rgb other;
+  const std::uint32_t count = sample_count(job, surface.estimate);
+  for (std::uint32_t i = 0; i < count; ++i) {
+    const Sampler sampler(job.options.seed, std::uint32_t(pixel.x), std::uint32_t(pixel.y),
+                          job.options.samples.first + sample++);
+    other += trace_known_sight(job.scene, job.settings, sight, sampler, rays).radiance;
+  }
+  return direct + other * (1.0F / float(count));
+}
+
+// Where the pictures of the layers that were asked for are.
+struct Layers {
+  Picture picture;
+
+  void set(const BeamPixel& pixel, Rgb color) {
+    for (int c = 0; c < 3; ++c) picture.color.at(pixel.x, pixel.y, c) = color[c];
+    for (Layer& layer : picture.layers) {
+      const double value = layer.name == kCoverageLo   ? pixel.coverage_lo
+                           : layer.name == kCoverageHi ? pixel.coverage_hi
+                                                       : (pixel.certified ? 0 : 1);
+      layer.image.at(pixel.x, pixel.y, 0) = float(value);
+    }
+  }
+};
+
+struct TileCounts {
+  BeamStats beam;
+  PathRays paths;
+};
+
+template <class Tracer>
+TileCounts render_tile(const Job& job, const Tracer& tracer, const BeamTile& tile, Layers& layers) {
+  TileCounts counts;
+  counts.beam = tracer.trace_tile(tile, [&](const BeamPixel& pixel) {
+    const FlushDenormals flush;
+    Rgb color;
+    std::uint32_t sample = 0;
+    for (const PixelSurface& surface : pixel.surfaces) {
+      if (!(surface.estimate > 0)) continue;
+      color += shade(job, pixel, surface, sample, counts.paths) * float(surface.estimate);
+    }
+    ARRIS_CHECK(is_finite(color), double(pixel.x), double(pixel.y));
+    layers.set(pixel, color);
+  });
+  return counts;
+}
+
+double seconds_since(std::chrono::steady_clock::time_point start) {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+// Those of tiles that are left out, as the render is to stop, are empty.
+template <class Tracer>
+std::vector<TileCounts> render_tiles(const Job& job, const Tracer& tracer, Layers& layers) {
+  const auto start = std::chrono::steady_clock::now();
+  const std::vector<BeamTile> tiles = tracer.make_tiles();
+  std::vector<TileCounts> counts(tiles.size());
+  std::atomic<std::size_t> finished = 0;
+  std::mutex reporting;
+  parallel_for(tiles.size(), {.threads = job.options.threads}, [&](std::size_t i) {
+    if (job.options.stop != nullptr && job.options.stop->load()) return;
+    counts[i] = render_tile(job, tracer, tiles[i], layers);
+    ++finished;
+    if (!job.options.on_progress) return;
+    const std::scoped_lock lock(reporting);
+    job.options.on_progress({double(finished) / double(tiles.size()), seconds_since(start)});
+  });
+  return counts;
+}
+
+class BeamRenderer final : public Renderer {
+ public:
+  explicit BeamRenderer(BeamRule rule) : rule_(rule) {}
+
+  [[nodiscard]] std::vector<std::string> aovs() const override {
+    return {kCoverageLo, kCoverageHi, kUncertified};
+  }
+
+  [[nodiscard]] RenderResult render(const PreparedScene& scene,
+                                    const RenderOptions& options) const override {
+    const auto start = std::chrono::steady_clock::now();
+    const ImageSettings& image = scene.scene().image;
+    Job job{scene, options, make_eye(scene.scene()), {.max_depth = image.max_depth}, {}, false};
+    job.emitters = point_like_emitters(scene.geometry().lights);
+    job.needs_paths = needs_paths(scene.geometry(), job.settings, job.emitters.size());
+    const std::vector<BeamSolid> solids = make_solids(scene.geometry());
+    Layers layers;
+    layers.picture.color = Image(image.width_px, image.height_px, 3);
+    for (const std::string& name : options.aovs) {
+      layers.picture.layers.push_back({name, Image(image.width_px, image.height_px, 1)});
+    }
+    // Four rays a region don't get better by smaller ones as bounds do.
+    const double least = rule_ == BeamRule::corners ? 1.0 / 8 : BeamOptions{}.least_region;
+    const BeamOptions beam{.least_region = least, .threads = options.threads};
+    const std::vector<LightPlace> lights = make_light_places(scene.geometry(), job.emitters);
+    const auto render_with = [&](const auto& tracer) { return render_tiles(job, tracer, layers); };
+    const std::vector<TileCounts> counts =
+        rule_ == BeamRule::corners
+            ? render_with(CornerTracer(solids, job.eye, image.width_px, image.height_px, beam))
+            : render_with(
+                  BeamTracer(solids, job.eye, image.width_px, image.height_px, beam, lights));
+    const bool stopped = options.stop != nullptr && options.stop->load();
+    RenderResult result;
+    result.samples = options.samples;
+    if (stopped) result.samples.last = result.samples.first;
+    sum_counts(counts, result);
+    const std::uint32_t samples = result.samples.last - result.samples.first;
+    result.sum = std::make_shared<const PictureSum>(sum_of_mean(layers.picture, samples));
+    if (samples > 0) result.picture = std::move(layers.picture);
+    result.seconds = seconds_since(start);
+    return result;
+  }
+
+ private:
+  static void sum_counts(const std::vector<TileCounts>& counts, RenderResult& result) {
+    BeamStats sum;
+    for (const TileCounts& c : counts) {
+      sum.add(c.beam);
+      result.rays.total += c.paths.total + c.beam.rays;
+    }
+    result.beam = BeamCounts{sum.regions, sum.rays,
+                             sum.pixels > 0 ? sum.certified_area / double(sum.pixels) : 0,
+                             sum.uncertified_pixels};
+    result.rays.camera = sum.rays;
+  }
+
+  BeamRule rule_;
+};
+
+}  // namespace
+
+std::unique_ptr<Renderer> make_beam_renderer(BeamRule rule) {
+  return std::make_unique<BeamRenderer>(rule);
+}
+
+std::vector<std::string> beam_problems(const Scene& scene) {
+  constexpr const char* kRemedy = "; use --integrator path";
+  std::vector<std::string> problems;
+  for (const Object& object : scene.objects) {
+    if (!object.csg) {
+      problems.push_back("object \"" + object.name +
+                         "\" is a mesh, and the beam renderer takes CSG solids only" + kRemedy);
+      continue;
+    }
+    for (const CsgLeaf& leaf : scene.csg_trees[object.csg->index].leaves) {
+      const char* name = std::visit(UnsupportedName{}, leaf.primitive);
+      if (name == nullptr) continue;
+      problems.push_back("object \"" + object.name + "\" has " + name +
+                         ", which the beam renderer can't bound" + kRemedy);
+      break;
+    }
+  }
+  return problems;
+}
+
+}  // namespace arris

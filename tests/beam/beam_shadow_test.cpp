@@ -1,0 +1,119 @@
+// Certain shadows against shadow rays.
+#include "beam/beam_shadow.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <map>
+
+#include "support/beam_truth.h"
+
+namespace arris::test {
+namespace {
+
+bool is_blocked(const BeamScene& scene, Vec3d from, Vec3d to) {
+  BoundarySearch search;
+  for (const BeamSolid& s : scene.placed) {
+    const Vec3d a = transform_point(s.object_from_world, from);
+    const Vec3d b = transform_point(s.object_from_world, to);
+    for (const CsgBoundary& boundary :
+         search.find(*s.solid, view_of(s.solid->root()), {a, b - a})) {
+      if (boundary.t > 1e-9 && boundary.t < 1 - 1e-9) return true;
+    }
+  }
+  return false;
+}
+
+// A floor, and what stands on it.
+BeamScene shadow_scene(CsgRandom& random, int count) {
+  BeamScene scene;
+  scene.width = scene.height = 4;
+  scene.add(one_leaf(CsgBox{{-6, -6, -1}, {6, 6, 0}}));
+  CsgTree things;
+  for (int i = 0; i < count; ++i) {
+    CsgLeaf leaf{random_convex(random), random_placement(random, 1), {}};
+    if (i % 2 == 0) leaf.primitive = CsgCone{-1, 1, 0.02, 0.02};
+    things = flat_tree(CsgOperation::intersect,
+                       {{CsgBox{Vec3d(-2), Vec3d(2)}, {}, {}}, std::move(leaf)});
+    scene.add(things, {{}, {uniform(random, -1, 1), uniform(random, -1, 1), 2.5}});
+  }
+  scene.eye = look_at(Vec3d(uniform(random, -3, 3), -7, 6), {0, 0, 0}, 40, 4, 4);
+  return scene;
+}
+
+TEST(beam_shadow, shares_of_lit_surface_hold_what_rays_find) {
+  CsgRandom random(3);
+  int known = 0, partly = 0;
+  for (int i = 0; i < 24; ++i) {
+    const BeamScene scene = shadow_scene(random, 1 + i % 3);
+    LightPlace light;
+    light.is_directional = i % 2 == 0;
+    light.direction = {uniform(random, -0.6, 0.6), uniform(random, -0.6, 0.6), -1};
+    light.position = {uniform(random, -3, 3), uniform(random, -3, 3), 9};
+    const BeamTracer tracer(scene.placed, scene.eye, 4, 4, {}, {&light, 1});
+    for (const BeamTile& tile : tracer.make_tiles()) {
+      tracer.trace_tile(tile, [&](const BeamPixel& pixel) {
+        double low = 0, high = 0, open = 0;  // of the floor's lit part
+        for (const PixelSurface& s : pixel.surfaces) {
+          if (!s.seen || s.seen->solid != 0) continue;
+          if (s.lit_known == 0) open += s.hi;
+          if (s.lit_known == 0 || s.lit == 0) continue;
+          low += s.lo;
+          high += s.hi;
+        }
+        constexpr int kGrid = 24;
+        double lit = 0;
+        for (int k = 0; k < kGrid * kGrid; ++k) {
+          const double x = pixel.x + (k % kGrid + 0.5) / kGrid;
+          const double y = pixel.y + (k / kGrid + 0.5) / kGrid;
+          const TruthHit hit = see(scene, x, y);
+          if (!hit.seen || hit.seen->solid != 0) continue;
+          const Vec3d p =
+              scene.eye.position +
+              (scene.eye.corner + scene.eye.step_x * x + scene.eye.step_y * y) * hit.depth;
+          const Vec3d to = light.is_directional ? p - light.direction * 20.0 : light.position;
+          if (!is_blocked(scene, p, to)) lit += 1.0 / (kGrid * kGrid);
+        }
+        const double slack = 3.0 / kGrid;
+        EXPECT_GE(lit, low - slack) << i;
+        EXPECT_LE(lit, high + open + slack) << i;
+        known += open == 0 ? 1 : 0;
+        partly += low > 0.01 && low < 0.99 ? 1 : 0;
+      });
+    }
+  }
+  EXPECT_GT(known, 250);
+  EXPECT_GT(partly, 60);
+}
+
+// A shadow of a hundredth of a pixel that no grid of samples meets.
+TEST(beam_shadow, shadows_thinner_than_any_grid_are_found) {
+  BeamScene scene;
+  scene.width = scene.height = 2;
+  scene.add(one_leaf(CsgBox{{-6, -6, -1}, {6, 6, 0}}));
+  const double radius = 0.01;
+  scene.add(
+      one_leaf(CsgCone{-4, 4, radius, radius}, {{{0, 0, 1}, {0, 1, 0}, {-1, 0, 0}}, {0, 0.3, 3}}));
+  scene.eye = look_at({0, -8, 0.5}, {0, 0, 0}, 20, 2, 2);  // the wire is above the picture
+  LightPlace light;
+  light.is_directional = true;
+  light.direction = {0, 0.01, -1};
+  const BeamTracer tracer(scene.placed, scene.eye, 2, 2, {}, {&light, 1});
+  double shadow_low = 0, shadow_high = 0;
+  for (const BeamTile& tile : tracer.make_tiles()) {
+    tracer.trace_tile(tile, [&](const BeamPixel& pixel) {
+      EXPECT_TRUE(pixel.certified);
+      for (const PixelSurface& s : pixel.surfaces) {
+        if (s.seen && s.seen->solid == 0 && s.lit_known != 0 && s.lit == 0) {
+          shadow_low += s.lo;
+          shadow_high += s.hi;
+        }
+      }
+    });
+  }
+  EXPECT_GT(shadow_low, 0);
+  EXPECT_LT(shadow_high - shadow_low, 1.0 / 256);
+}
+
+}  // namespace
+}  // namespace arris::test

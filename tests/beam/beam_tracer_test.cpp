@@ -1,0 +1,181 @@
+// The certificate against rays: every ray sees a surface that its pixel lists, as often as the bounds say.
+#include "beam/beam_tracer.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "support/beam_truth.h"
+
+namespace arris::test {
+namespace {
+
+struct Report {
+  int pixels = 0, missed = 0, outside = 0, uncertified = 0, surfaces = 0;
+  double worst_open = 0;
+  BeamStats stats;
+};
+
+// Samples of a regular grid count squares: an outline in a pixel may be off by the squares it crosses.
+void check_pixel(const BeamScene& scene, const BeamPixel& pixel, int grid, Report& report) {
+  std::map<SeenKey, double> truth;
+  for (int j = 0; j < grid; ++j) {
+    for (int i = 0; i < grid; ++i) {
+      const double x = pixel.x + (i + 0.5) / grid, y = pixel.y + (j + 0.5) / grid;
+      truth[key_of(see(scene, x, y).seen)] += 1.0 / (grid * grid);
+    }
+  }
+  std::map<SeenKey, const PixelSurface*> listed;
+  for (const PixelSurface& s : pixel.surfaces) listed[key_of(s.seen)] = &s;
+  const double slack = truth.size() > 1 || pixel.surfaces.size() > 1 ? 3.0 / grid : 1e-12;
+  for (const auto& [key, share] : truth) {
+    const auto at = listed.find(key);
+    if (at == listed.end() || !(at->second->hi > 0)) {
+      ++report.missed;
+      ADD_FAILURE() << "pixel " << pixel.x << ", " << pixel.y << ": solid " << std::get<0>(key)
+                    << " leaf " << std::get<1>(key) << " face " << std::get<2>(key) << " share "
+                    << share;
+      continue;
+    }
+    if (share < at->second->lo - slack || share > at->second->hi + slack) ++report.outside;
+  }
+  for (const PixelSurface& s : pixel.surfaces) {
+    if (s.lo > slack && !truth.contains(key_of(s.seen))) ++report.outside;
+    report.worst_open = std::max(report.worst_open, s.hi - s.lo);
+  }
+  ++report.pixels;
+  report.surfaces += int(pixel.surfaces.size());
+  report.uncertified += pixel.certified ? 0 : 1;
+}
+
+Report check_scene(const BeamScene& scene, int grid) {
+  Report report;
+  const BeamTracer tracer(scene.placed, scene.eye, scene.width, scene.height);
+  for (const BeamTile& tile : tracer.make_tiles()) {
+    report.stats.add(tracer.trace_tile(
+        tile, [&](const BeamPixel& pixel) { check_pixel(scene, pixel, grid, report); }));
+  }
+  EXPECT_EQ(report.pixels, scene.width * scene.height);
+  return report;
+}
+
+void expect_sound(const BeamScene& scene, const std::string& name, int grid = 16) {
+  const Report report = check_scene(scene, grid);
+  EXPECT_EQ(report.missed, 0) << name;
+  EXPECT_EQ(report.outside, 0) << name;
+}
+
+// The one sentence of the README. Solids interpenetrate, and every fifth eye is among them.
+TEST(beam_tracer, no_surface_is_missed_and_samples_lie_inside_the_bounds) {
+  CsgRandom random(1);
+  for (int i = 0; i < 40; ++i) {
+    BeamScene scene;
+    scene.width = scene.height = 8;
+    const int solids = 1 + int(random() % 2);
+    for (int k = 0; k < solids; ++k) {
+      scene.add(random_convex_tree(random, 1 + int(random() % 3)),
+                k == 0 ? Affine3d{} : random_placement(random, 1));
+    }
+    const Vec3d from = i % 5 == 0 ? random_vector(random, 1.2) : random_unit(random) * 6.0;
+    scene.eye = look_at(from, random_vector(random, 0.5), 40, scene.width, scene.height);
+    expect_sound(scene, std::to_string(i), 12);
+  }
+}
+
+CsgLeaf ball(Vec3d at, double radius) {
+  return {CsgSphere{radius}, {{}, at}, {}};
+}
+CsgLeaf rod(Vec3d at, double radius, double half_height) {
+  return {CsgCone{-half_height, half_height, radius, radius}, {{}, at}, {}};
+}
+
+// What corner rays don't see, each in a picture of few pixels.
+TEST(beam_tracer, what_lies_between_corner_rays_is_seen) {
+  const auto scene_of = [](const CsgTree& tree, Vec3d from = {0.2, -0.1, 5}) {
+    BeamScene scene;
+    scene.width = scene.height = 4;
+    scene.add(tree);
+    scene.eye = look_at(from, {0, 0, 0}, 30, 4, 4);
+    return scene;
+  };
+  const CsgLeaf slab{CsgBox{{-2, -2, -0.1}, {2, 2, 0.1}}, {}, {}};
+  expect_sound(scene_of(flat_tree(CsgOperation::subtract, {slab, rod({0.13, 0.1, 0}, 0.02, 1)})),
+               "hole between corners", 64);
+  expect_sound(scene_of(flat_tree(CsgOperation::unite, {slab, ball({0.1, 0.1, 0.09}, 0.03)})),
+               "ball that pokes through a face", 64);
+  expect_sound(
+      scene_of(flat_tree(CsgOperation::unite, {ball({0, 0, 0}, 1), ball({0.1, 0, 0.02}, 1)})),
+      "interpenetrating balls");
+  expect_sound(scene_of(one_leaf(CsgSphere{0.004})), "speck", 128);
+  expect_sound(scene_of(one_leaf(CsgCone{-2, 2, 0.003, 0.003},
+                                 {{{1, 0, 0}, {0, 0, 1}, {0, -1, 0}}, {0.1, 0, 0}})),
+               "wire", 128);
+  expect_sound(scene_of(one_leaf(CsgSphere{8})), "eye inside a ball");
+  expect_sound(
+      scene_of(flat_tree(CsgOperation::subtract, {ball({0, 0, 0}, 9), rod({0, 0, 0}, 6, 20)})),
+      "eye in a hole");
+  expect_sound(scene_of(flat_tree(CsgOperation::subtract, {slab, slab})), "A - A");
+  expect_sound(scene_of(flat_tree(CsgOperation::unite,
+                                  {slab, {CsgBox{{0, -2, -0.1}, {3, 2, 0.1}}, {}, {}}})),
+               "coincident faces");
+  expect_sound(scene_of(flat_tree(CsgOperation::unite, {slab, ball({0, 0, 0.6}, 0.5)})),
+               "tangent ball");
+  expect_sound(scene_of(one_leaf(CsgCone{0, 2, 1, 0}), {0.3, 0.1, 6}), "cone from its tip");
+  expect_sound(scene_of(one_leaf(CsgCone{0, 2, 0, 1}), {0.3, 0.1, 6}), "cone from its mouth");
+}
+
+// Far more closely than any grid of samples: the area of a ball's picture is known.
+TEST(beam_tracer, areas_are_those_of_closed_forms) {
+  BeamScene scene;
+  scene.width = scene.height = 8;
+  const double distance = 5, radius = 0.7;
+  scene.add(one_leaf(CsgSphere{radius}));
+  scene.eye = look_at({0, 0, distance}, {0, 0, 0}, 30, 8, 8);
+  const BeamTracer tracer(scene.placed, scene.eye, 8, 8);
+  double low = 0, high = 0;
+  for (const BeamTile& tile : tracer.make_tiles()) {
+    tracer.trace_tile(tile, [&](const BeamPixel& pixel) {
+      EXPECT_TRUE(pixel.certified);
+      EXPECT_LE(pixel.coverage_hi - pixel.coverage_lo, 1.0 / 512);
+      low += pixel.coverage_lo;
+      high += pixel.coverage_hi;
+    });
+  }
+  const double pixel = 2 * std::tan(radians(15)) / 8;
+  const double outline = radius / std::sqrt(distance * distance - radius * radius) / pixel;
+  EXPECT_LE(low, kPi * outline * outline);
+  EXPECT_GE(high, kPi * outline * outline);
+  EXPECT_GT(low, 0.99 * high);
+}
+
+TEST(beam_tracer, same_pixels_at_any_number_of_threads) {
+  CsgRandom random(5);
+  BeamScene scene;
+  scene.width = scene.height = 40;
+  scene.add(random_convex_tree(random, 2));
+  scene.eye = look_at({4, 3, 3}, {0, 0, 0}, 40, 40, 40);
+  const auto sum = [&](int threads) {
+    const BeamTracer tracer(scene.placed, scene.eye, 40, 40, {.threads = threads});
+    std::vector<double> values;
+    for (const BeamTile& tile : tracer.make_tiles()) {
+      tracer.trace_tile(tile, [&](const BeamPixel& pixel) {
+        for (const PixelSurface& s : pixel.surfaces) {
+          values.insert(values.end(), {s.lo, s.hi, s.estimate, s.sample.x, s.sample.y});
+        }
+      });
+    }
+    return values;
+  };
+  EXPECT_EQ(sum(1), sum(2));
+}
+
+TEST(beam_tracer, names_leaves_that_it_cannot_bound) {
+  EXPECT_FALSE(find_unsupported_leaf(CsgSolid(one_leaf(CsgSphere{1}))));
+  EXPECT_EQ(find_unsupported_leaf(CsgSolid(one_leaf(CsgTorus{1, 0.2}))), "leaf 0 (torus)");
+}
+
+}  // namespace
+}  // namespace arris::test

@@ -1,0 +1,115 @@
+// The beam renderer against closed forms and the path tracer.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "arris/render.h"
+#include "support/csg_oracle.h"
+#include "support/render_scenes.h"
+
+namespace arris::test {
+namespace {
+
+// A ball of radius 0.7 on a slab, with a hole through both, in the light of a lamp.
+Scene beam_scene() {
+  Camera camera;
+  camera.position = {0.5, -5, 4};
+  Scene scene = make_empty_scene(camera);
+  scene.meshes.emplace_back();
+  scene.materials = {make_lambert(0.5F), make_lambert(0.8F)};
+  CsgTree tree =
+      flat_tree(CsgOperation::subtract, {{CsgBox{{-2, -2, -0.5}, {2, 2, 0}}, {}, {0}},
+                                         {CsgCone{-2, 2, 0.15, 0.15}, {{}, {0.9, -0.8, 0}}, {0}}});
+  scene.csg_trees.push_back(std::move(tree));
+  scene.csg_trees.push_back(one_leaf(CsgSphere{0.7}, {{}, {0, 0, 1}}));
+  scene.csg_trees[1].leaves[0].material = MaterialId{1};
+  for (std::uint32_t i = 0; i < 2; ++i) {
+    Object object;
+    object.name = i == 0 ? "slab" : "ball";
+    object.csg = CsgId{i};
+    scene.objects.push_back(object);
+  }
+  scene.lights.emplace_back(PointLight{{2, -3, 6}, {90, 90, 90}});
+  scene.image.width_px = scene.image.height_px = 24;
+  scene.image.filter = ImageSettings::Filter::box;
+  scene.image.max_depth = 1;
+  return scene;
+}
+
+RenderResult render(const Scene& scene, const Renderer& renderer, std::uint32_t samples,
+                    std::vector<std::string> aovs = {}, int threads = 0) {
+  RenderOptions options;
+  options.samples = {0, samples};
+  options.aovs = std::move(aovs);
+  options.threads = threads;
+  return renderer.render(*prepare_scene(scene), options);
+}
+
+double rmse(const Image& a, const Image& b) {
+  double sum = 0;
+  for (std::size_t i = 0; i < a.values.size(); ++i) {
+    sum += std::pow(double(a.values[i]) - double(b.values[i]), 2);
+  }
+  return std::sqrt(sum / double(a.values.size()));
+}
+
+TEST(beam_renderer, agrees_with_the_path_tracer) {
+  const Scene scene = beam_scene();
+  const Image beam = render(scene, *make_beam_renderer(), 1).picture.color;
+  const Image many = render(scene, *make_path_renderer(), 1024).picture.color;
+  EXPECT_LT(rmse(beam, many), 0.01);
+  const Image corners = render(scene, *make_beam_renderer(BeamRule::corners), 1).picture.color;
+  EXPECT_LT(rmse(corners, many), 0.02);
+}
+
+TEST(beam_renderer, other_light_is_path_traced) {
+  Scene scene = beam_scene();
+  scene.environment = ConstantEnvironment{{0.5F, 0.5F, 0.5F}};
+  scene.image.max_depth = 4;
+  const Image beam = render(scene, *make_beam_renderer(), 256).picture.color;
+  const Image path = render(scene, *make_path_renderer(), 1024).picture.color;
+  EXPECT_LT(rmse(beam, path), 0.03);
+  EXPECT_NEAR(mean_of(beam), mean_of(path), 0.01 * mean_of(path));
+}
+
+TEST(beam_renderer, fills_its_layers_and_counts) {
+  const Scene scene = beam_scene();
+  const auto renderer = make_beam_renderer();
+  const RenderResult result = render(scene, *renderer, 1, renderer->aovs());
+  ASSERT_EQ(result.picture.layers.size(), 3U);
+  const Image& lo = result.picture.layers[0].image;
+  const Image& hi = result.picture.layers[1].image;
+  double area = 0;
+  for (std::size_t i = 0; i < lo.values.size(); ++i) {
+    EXPECT_LE(lo.values[i], hi.values[i]);
+    EXPECT_LE(hi.values[i], 1);
+    EXPECT_TRUE(hi.values[i] - lo.values[i] <= 1.0F / 512 ||
+                result.picture.layers[2].image.values[i] == 1);
+    area += double(lo.values[i]);
+  }
+  EXPECT_GT(area, 50);
+  ASSERT_TRUE(result.beam);
+  EXPECT_GT(result.beam->regions, 0U);
+  EXPECT_GT(result.beam->certified_fraction, 0.99);
+  EXPECT_EQ(render(scene, *renderer, 1, {}, 1).picture.color.values, result.picture.color.values);
+}
+
+TEST(beam_renderer, says_what_it_cannot_take) {
+  Scene scene = beam_scene();
+  EXPECT_TRUE(beam_problems(scene).empty());
+  add_object(scene, make_box_mesh(Vec3d(1)), make_lambert(0.5F));
+  scene.csg_trees.push_back(one_leaf(CsgTorus{1, 0.2}));
+  Object ring;
+  ring.name = "ring";
+  ring.csg = CsgId{2};
+  scene.objects.push_back(ring);
+  const std::vector<std::string> problems = beam_problems(scene);
+  ASSERT_EQ(problems.size(), 2U);
+  EXPECT_NE(problems[0].find("is a mesh"), std::string::npos);
+  EXPECT_EQ(
+      problems[1],
+      "object \"ring\" has a torus, which the beam renderer can't bound; use --integrator path");
+}
+
+}  // namespace
+}  // namespace arris::test

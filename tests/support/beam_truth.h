@@ -1,0 +1,83 @@
+// beam_truth.h — what rays see, sample by sample, and random scenes of supported leaves
+#pragma once
+
+#include <map>
+#include <optional>
+#include <tuple>
+#include <vector>
+
+#include "beam/beam_tracer.h"
+#include "support/csg_oracle.h"
+
+namespace arris::test {
+
+// Solid, leaf, face, entering; nothing: (-1, 0, 0, false).
+using SeenKey = std::tuple<int, std::uint32_t, std::uint32_t, bool>;
+
+inline SeenKey key_of(const std::optional<SeenSurface>& seen) {
+  return seen ? SeenKey{int(seen->solid), seen->leaf, seen->face, seen->entering}
+              : SeenKey{-1, 0, 0, false};
+}
+
+struct BeamScene {
+  std::vector<CsgSolid> solids;
+  std::vector<BeamSolid> placed;
+  EyeRays eye;
+  int width = 16, height = 16;
+
+  void add(const CsgTree& tree, const Affine3d& world_from_object = {}) {
+    solids.reserve(16);
+    solids.emplace_back(tree);
+    placed.push_back({&solids.back(), inverse(world_from_object)});
+  }
+};
+
+inline EyeRays look_at(Vec3d from, Vec3d to, double fov_deg, int width, int height) {
+  const Vec3d f = normalize(to - from), right = normalize(cross(f, Vec3d(0.1, 0.2, 1)));
+  const double pixel = 2 * std::tan(radians(fov_deg) / 2) / height;
+  EyeRays eye;
+  eye.position = from;
+  eye.step_x = right * pixel;
+  eye.step_y = cross(f, right) * pixel;
+  eye.corner = f - eye.step_x * (width / 2.0) - eye.step_y * (height / 2.0);
+  return eye;
+}
+
+// The first boundary along the ray through a picture point, of all solids; `second` is how far behind it the next is.
+struct TruthHit {
+  std::optional<SeenSurface> seen;
+  double depth = INFINITY;
+};
+inline TruthHit see(const BeamScene& scene, double x, double y) {
+  BoundarySearch search;
+  TruthHit hit;
+  const Vec3d direction = scene.eye.corner + scene.eye.step_x * x + scene.eye.step_y * y;
+  for (std::uint32_t i = 0; i < scene.placed.size(); ++i) {
+    const BeamSolid& s = scene.placed[i];
+    const Ray ray{transform_point(s.object_from_world, scene.eye.position),
+                  transform_vector(s.object_from_world, direction)};
+    for (const CsgBoundary& b : search.find(*s.solid, view_of(s.solid->root()), ray)) {
+      if (b.t <= 0) continue;
+      if (b.t < hit.depth) hit = {SeenSurface{i, b.leaf, b.face, {}, b.entering}, b.t};
+      break;
+    }
+  }
+  return hit;
+}
+
+// Spheres, boxes, cylinders, cones, convex polyhedra, half-spaces.
+inline CsgPrimitive random_convex(CsgRandom& random) {
+  constexpr int kinds[] = {0, 1, 2, 2, 4, 10};
+  return random_primitive(random, kinds[random() % 6]);
+}
+
+// As random_tree(), of convex leaves.
+inline CsgTree random_convex_tree(CsgRandom& random, int depth) {
+  CsgTree tree = random_tree(random, depth);
+  for (std::size_t i = 1; i < tree.leaves.size(); ++i) {
+    tree.leaves[i].primitive = random_convex(random);
+  }
+  return tree;
+}
+
+}  // namespace arris::test
