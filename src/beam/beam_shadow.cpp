@@ -124,8 +124,8 @@ namespace {
 
 // A leaf that ends at the plane and lies behind it is not in the light's way.
 bool is_behind(const PlacedLeaf& leaf, std::uint32_t plane, Sign light_side) {
-  const auto& convex = std::get<ConvexLeaf>(leaf.shape);
-  return std::ranges::any_of(convex.planes, [&](PlaneRef ref) {
+  const auto* convex = std::get_if<ConvexLeaf>(&leaf.shape);
+  return convex != nullptr && std::ranges::any_of(convex->planes, [&](PlaneRef ref) {
     return ref.plane == plane && (light_side == Sign::positive) == !ref.flipped;
   });
 }

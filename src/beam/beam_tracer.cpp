@@ -4,7 +4,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <string>
+#include <variant>
 
 #include "base/parallel_for.h"
 
@@ -15,15 +15,6 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 // How often a pixel's outlines are followed again, each time four times as closely.
 constexpr int kCloserLooks = 4;
-
-struct LeafName {
-  const char* operator()(const ConvexLeaf&) const { return nullptr; }
-  const char* operator()(const TorusLeaf&) const { return "torus"; }
-  const char* operator()(const PrismLeaf&) const { return "extrusion"; }
-  const char* operator()(const RevolutionLeaf&) const { return "solid of revolution"; }
-  const char* operator()(const MeshLeaf&) const { return "polyhedron that is not convex"; }
-  const char* operator()(const RoundedLeaf&) const { return "rounded polyhedron"; }
-};
 
 std::array<Rect, 4> quarters_of(const Rect& r) {
   const double x = r.middle_x(), y = r.middle_y();
@@ -41,13 +32,13 @@ void BeamStats::add(const BeamStats& other) {
   certified_area += other.certified_area;
 }
 
-std::optional<std::string> find_unsupported_leaf(const CsgSolid& solid) {
-  for (const std::uint32_t leaf : solid.root().leaves()) {
-    if (const char* name = std::visit(LeafName{}, solid.leaf(leaf).shape)) {
-      return "leaf " + std::to_string(leaf) + " (" + name + ")";
-    }
+SeenSurface surface_of(std::uint32_t index, const CsgSolid& solid, const CsgBoundary& boundary) {
+  SeenSurface seen{index, boundary.leaf, boundary.face, {}, boundary.entering};
+  if (!std::holds_alternative<ConvexLeaf>(solid.leaf(boundary.leaf).shape)) {
+    seen.face = kAnyFace;
+    seen.surface = {index, boundary.leaf, BeamSurface::Root::whole};
   }
-  return std::nullopt;
+  return seen;
 }
 
 // One tile under way.
@@ -85,7 +76,7 @@ class BeamTracer::Tracer {
     const std::vector<BeamPart> parts = prune_parts(shared_.view_, above, rect, depth_end);
     ++stats_.regions;
     LookTree tree = look(shared_.view_, parts, rect, depth_end);
-    const bool smallest = rect.width() <= shared_.options_.least_region;
+    const bool smallest = rect.width() <= least_region(parts);
     const bool complete = (tree.complete || smallest) && add_shadows(tree, rect);
     if (complete || smallest) {
       add_ends(tree, areas_of(tree, rect), parts);
@@ -94,6 +85,19 @@ class BeamTracer::Tracer {
     for (const Rect& part : quarters_of(rect)) {
       visit_part(part, parts, std::min(depth_end, tree.depth_end));
     }
+  }
+
+  // Outlines of leaves that aren't convex stay open however small the regions are.
+  [[nodiscard]] double least_region(const std::vector<BeamPart>& parts) const {
+    const bool any_whole = std::ranges::any_of(parts, [&](const BeamPart& part) {
+      return std::ranges::any_of(part.expression.leaves(), [&](std::uint32_t leaf) {
+        const PlacedLeaf& placed = shared_.view_.solid(part.solid).leaf(leaf);
+        return !std::holds_alternative<ConvexLeaf>(placed.shape);
+      });
+    });
+    const BeamOptions& options = shared_.options_;
+    return any_whole ? std::max(options.least_region, options.least_open_region)
+                     : options.least_region;
   }
 
   bool add_shadows(LookTree& tree, const Rect& rect) {
@@ -166,11 +170,14 @@ class BeamTracer::Tracer {
 
   void add_all_faces(const BeamPart& part, PixelSurface open) {
     for (const std::uint32_t leaf : part.expression.leaves()) {
-      const auto& convex = std::get<ConvexLeaf>(shared_.view_.solid(part.solid).leaf(leaf).shape);
-      const std::size_t faces = convex.planes.size() + (convex.quadric ? 1 : 0);
+      const auto* convex =
+          std::get_if<ConvexLeaf>(&shared_.view_.solid(part.solid).leaf(leaf).shape);
+      const std::size_t faces =
+          convex == nullptr ? 1 : convex->planes.size() + (convex->quadric ? 1 : 0);
       for (std::uint32_t face = 0; face < faces; ++face) {
         for (const bool entering : {true, false}) {
-          open.seen = SeenSurface{part.solid, leaf, face, {}, entering};
+          open.seen =
+              SeenSurface{part.solid, leaf, convex == nullptr ? kAnyFace : face, {}, entering};
           add(open);
         }
       }
@@ -192,7 +199,7 @@ class BeamTracer::Tracer {
         if (b.t <= 0) continue;
         if (b.t < nearest) {
           nearest = b.t;
-          seen = SeenSurface{part.solid, b.leaf, b.face, {}, b.entering};
+          seen = surface_of(part.solid, *solid.solid, b);
         }
         break;
       }

@@ -5,7 +5,7 @@
 //            sampled by a ray and left open between its bounds.
 // Guarantee  the area of every surface in every pixel lies within its [lo, hi]; a surface that is not listed is not
 //            there. Both but for rounding in the sums of areas (tests/beam/beam_tracer_test.cpp: dense sampling)
-// Limits     leaves of planes and at most one quadric; find_unsupported_leaf() names the first other
+// Limits     the outlines of leaves that are not convex (see convex_solid.h for those that can be cut) stay open
 // Cost       parallel over tiles; the same pixels at any number of threads
 // Source     J.-M. Hasenfratz and D. Ghazanfarpour, "Rendering CSG scenes with general antialiasing", 1996: regions,
 //            beams and lists handed down; where corners decide there, bounds decide here (docs/beam.md)
@@ -15,7 +15,6 @@
 #include <functional>
 #include <optional>
 #include <span>
-#include <string>
 #include <vector>
 
 #include "beam/beam_shadow.h"
@@ -53,7 +52,8 @@ struct BeamStats {
 
 struct BeamOptions {
   double tolerance = 1.0 / 512;    // of hi - lo
-  double least_region = 1.0 / 64;  // of a pixel's side
+  double least_region = 1.0 / 64;       // of a pixel's side
+  double least_open_region = 1.0 / 16;  // where a leaf that is not convex is among what may be seen
   int tile_px = 16;                // a power of two
   int threads = 0;                 // 0: all
 };
@@ -63,12 +63,12 @@ struct BeamTile {
   std::vector<BeamPart> parts;
 };
 
-// "leaf 3 (torus)", if there is one.
-std::optional<std::string> find_unsupported_leaf(const CsgSolid& solid);
+// What a ray meets, as beams name it: leaves that aren't convex have one surface.
+SeenSurface surface_of(std::uint32_t index, const CsgSolid& solid, const CsgBoundary& boundary);
 
 class BeamTracer {
  public:
-  // `solids` must outlive the tracer. Precondition: only supported leaves.
+  // `solids` and `lights` must outlive the tracer.
   // The lights whose shadows are looked for.
   BeamTracer(std::span<const BeamSolid> solids, const EyeRays& eye, int width_px, int height_px,
              const BeamOptions& options = {}, std::span<const LightPlace> lights = {});

@@ -214,7 +214,7 @@ LeafWindow BeamView::make_window(std::uint32_t solid, std::uint32_t leaf) const 
   const Box3d& box = this->solid(solid).leaf(leaf).bounds;
   if (!is_finite(box.low) || !is_finite(box.high)) return everywhere;
   const Projection& map = projections_[solid];
-  LeafWindow window{kInfinity, kInfinity, -kInfinity, -kInfinity};
+  LeafWindow window{kInfinity, kInfinity, -kInfinity, -kInfinity, kInfinity, 0};
   for (int i = 0; i < 8; ++i) {
     const Vec3d p{(i & 1) != 0 ? box.high.x : box.low.x, (i & 2) != 0 ? box.high.y : box.low.y,
                   (i & 4) != 0 ? box.high.z : box.low.z};
@@ -225,9 +225,35 @@ LeafWindow BeamView::make_window(std::uint32_t solid, std::uint32_t leaf) const 
     const double x = q.x / q.z, y = q.y / q.z;
     const double slack = kWindowMargin * (1 + std::abs(x) + std::abs(y)) * (1 + scale / q.z * 1e-6);
     window = {std::min(window.x0, x - slack), std::min(window.y0, y - slack),
-              std::max(window.x1, x + slack), std::max(window.y1, y + slack)};
+              std::max(window.x1, x + slack), std::max(window.y1, y + slack),
+              std::min(window.near, q.z - kWindowMargin * scale),
+              std::max(window.far, q.z + kWindowMargin * scale)};
+  }
+  if (!is_eye_) {
+    window.near = 0;
+    window.far = kInfinity;
   }
   return window;
+}
+
+SpaceCell BeamView::cell(std::uint32_t solid, const Rect& rect, Interval depths) const {
+  const ViewFrame& frame = frames_[solid];
+  const Interval x = Interval(rect.x0) * Interval(0.5) + Interval(rect.x1) * Interval(0.5);
+  const Interval y = Interval(rect.y0) * Interval(0.5) + Interval(rect.y1) * Interval(0.5);
+  const auto half = [](double low, double high) {
+    return (Interval(high) - Interval(low)) * Interval(0.5);
+  };
+  const auto at = [&](const Linear& p) { return p.c + p.x * x + p.y * y; };
+  const Vec3i origin{frame.origin.x.c, frame.origin.y.c, frame.origin.z.c};
+  const LinearVec& d = frame.direction;
+  const Vec3i middle{at(d.x), at(d.y), at(d.z)};
+  const auto scaled = [](const Vec3i& v, Interval s) { return Vec3i{v.x * s, v.y * s, v.z * s}; };
+  const Interval z = (Interval(depths.lo) + Interval(depths.hi)) * Interval(0.5);
+  const Interval far(depths.hi);
+  return {origin + scaled(middle, z),
+          {scaled({d.x.x, d.y.x, d.z.x}, far * half(rect.x0, rect.x1)),
+           scaled({d.x.y, d.y.y, d.z.y}, far * half(rect.y0, rect.y1)),
+           scaled(middle, half(depths.lo, depths.hi))}};
 }
 
 const PlaneForm& BeamView::remembered_plane(std::uint32_t solid, std::uint32_t index) const {
@@ -246,10 +272,10 @@ const QuadricForm& BeamView::remembered_quadric(std::uint32_t solid, std::uint32
   return asked_quadrics_.emplace(key, make_form(frames_[solid], quadric)).first->second;
 }
 
-BeamView::BeamView(std::span<const BeamSolid> solids, const EyeRays& eye) : solids_(solids) {
+BeamView::BeamView(std::span<const BeamSolid> solids, const EyeRays& eye)
+    : solids_(solids), is_eye_(true) {
   const Mat3d picture = make_picture_map(eye);
-  for (std::uint32_t i = 0; i < solids.size(); ++i) {
-    const BeamSolid& solid = solids[i];
+  for (const BeamSolid& solid : solids) {
     const ViewFrame frame = make_eye_frame(eye, solid);
     std::vector<PlaneForm>& planes = planes_.emplace_back();
     for (const CsgPlane& plane : solid.solid->surfaces().planes()) {

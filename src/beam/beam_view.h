@@ -11,6 +11,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <unordered_map>
 #include <vector>
@@ -82,6 +83,8 @@ struct LightPlace {
 // lit plane.
 struct LeafWindow {
   double x0 = 0, y0 = 0, x1 = 0, y1 = 0;
+  // Depths between which it lies; only the eye's view knows.
+  double near = 0, far = std::numeric_limits<double>::infinity();
 
   [[nodiscard]] bool meets(const Rect& r) const {
     return x0 <= r.x1 && x1 >= r.x0 && y0 <= r.y1 && y1 >= r.y0;
@@ -105,6 +108,8 @@ class BeamView {
   [[nodiscard]] LeafWindow window(std::uint32_t solid, std::uint32_t leaf) const {
     return windows_.empty() ? make_window(solid, leaf) : windows_[solid][leaf];
   }
+  // Holds what the rays through `rect` pass between two depths, in the solid's space. Precondition: not direction_fixed().
+  [[nodiscard]] SpaceCell cell(std::uint32_t solid, const Rect& rect, Interval depths) const;
   // A light's view remembers what it was asked: for one thread at a time.
   [[nodiscard]] const PlaneForm& plane(std::uint32_t solid, std::uint32_t index) const {
     return planes_.empty() ? remembered_plane(solid, index) : planes_[solid][index];
@@ -125,6 +130,7 @@ class BeamView {
                                                       std::uint32_t index) const;
 
   std::span<const BeamSolid> solids_;
+  bool is_eye_ = false;
   std::vector<ViewFrame> frames_;
   std::vector<Projection> projections_;  // by solid, from its own space
   std::vector<std::vector<LeafWindow>> windows_;

@@ -94,7 +94,7 @@ class CornerTracer::Tracer {
         if (b.t <= 0) continue;
         if (b.t < nearest) {
           nearest = b.t;
-          known->second = SeenSurface{part.solid, b.leaf, b.face, {}, b.entering};
+          known->second = surface_of(part.solid, solid, b);
         }
         break;
       }

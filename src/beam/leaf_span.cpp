@@ -36,7 +36,9 @@ class SpanMaker {
 
   std::optional<LeafSpan> make() {
     const PlacedLeaf& placed = view_.solid(place_.solid).leaf(place_.leaf);
-    const auto& leaf = std::get<ConvexLeaf>(placed.shape);
+    const auto* convex = std::get_if<ConvexLeaf>(&placed.shape);
+    if (convex == nullptr) return make_whole();
+    const ConvexLeaf& leaf = *convex;
     span_.starts_inside = true;
     for (std::uint32_t i = 0; i < leaf.planes.size(); ++i) {
       if (!add_plane(leaf.planes[i], i)) return std::nullopt;
@@ -48,6 +50,59 @@ class SpanMaker {
   }
 
  private:
+  // Of a leaf that is not convex: slices of the beam, from the front.
+  std::optional<LeafSpan> make_whole() {
+    const LeafWindow window = view_.window(place_.solid, place_.leaf);
+    span_.enter = span_.leave = {window.near, window.far};
+    if (window.far < kInfinity && window.near > 0 && !bound_whole()) return std::nullopt;
+    if (!(span_.enter.lo <= depth_end_)) return std::nullopt;
+    const BeamSurface surface{place_.solid, place_.leaf, Root::whole};
+    span_.entering.push_back({span_.enter, surface, kAnyFace});
+    span_.leaving.push_back({span_.leave, surface, kAnyFace});
+    return std::move(span_);
+  }
+  // What slices of [near, far] tell, in their order.
+  struct Slices {
+    std::optional<double> first_on, first_in;  // where the first begin that are not outside, inside
+    double in_end = 0, last_on = 0;            // where the inside ones end that come first; where the last end
+  };
+  [[nodiscard]] Slices slice(Interval range) const {
+    constexpr int kSlices = 16;
+    const CsgSolid& solid = view_.solid(place_.solid);
+    const auto depth = [&](int i) { return range.lo + (range.hi - range.lo) * (double(i) / kSlices); };
+    Slices found;
+    for (int i = 0; i < kSlices; ++i) {
+      const Interval d{depth(i), i + 1 < kSlices ? depth(i + 1) : range.hi};
+      const Cover cover = solid.cover_of(place_.leaf, view_.cell(place_.solid, oracle_.rect(), d));
+      if (cover == Cover::out) continue;
+      if (!found.first_on) found.first_on = d.lo;
+      found.last_on = d.hi;
+      if (cover != Cover::in) continue;
+      if (!found.first_in) found.first_in = found.in_end = d.lo;
+      if (found.in_end == d.lo) found.in_end = d.hi;
+    }
+    return found;
+  }
+  // False: all slices are outside. Finer ones follow until they are about as deep as the beam is wide.
+  bool bound_whole() {
+    const Slices all = slice(span_.enter);
+    if (!all.first_on) return false;
+    span_.certain = all.first_in.has_value();
+    span_.enter = {*all.first_on, all.first_in.value_or(all.last_on)};
+    span_.leave = {all.first_in ? all.in_end : *all.first_on, all.last_on};
+    if (!span_.certain) return true;
+    const SpaceCell cell = view_.cell(place_.solid, oracle_.rect(), span_.enter);
+    const double width = absolute(dot(cell.half[0], cell.half[0])).hi;
+    const double depth = absolute(dot(cell.half[2], cell.half[2])).hi;
+    double ratio = std::sqrt(depth / width);
+    for (; ratio > 2 && span_.enter.hi > span_.enter.lo; ratio /= 16) {
+      const Slices closer = slice(span_.enter);
+      if (!closer.first_on) break;
+      span_.enter = {*closer.first_on, closer.first_in.value_or(span_.enter.hi)};
+    }
+    return true;
+  }
+
   // False: every ray misses.
   bool add_plane(PlaneRef ref, std::uint32_t face) {
     const PlaneForm& form = view_.plane(place_.solid, ref.plane);
@@ -308,6 +363,7 @@ Order order_of_plane_and_root(const BeamView& view, const SpanEnd& plane, const 
     case Root::other_half:
       return inside ? order_to_middle(view, plane, root, oracle) : Order::before;
     case Root::none:
+    case Root::whole:
       break;
   }
   return Order::unknown;
@@ -322,6 +378,7 @@ std::optional<LeafSpan> make_span(const BeamView& view, LeafPlace place, double 
 
 Met decide_end_met(const BeamView& view, const SpanEnd& end, SignOracle& oracle) {
   if (end.depth.hi < kInfinity) return Met::yes;
+  if (end.surface.is_whole()) return Met::unknown;
   if (end.surface.is_plane()) return plane_met(view, end, oracle);
   const CsgQuadric& quadric =
       view.solid(end.surface.solid).surfaces().quadrics()[end.surface.index];
@@ -343,6 +400,7 @@ Order order_of(const BeamView& view, const SpanEnd& a, const SpanEnd& b, SignOra
   if (a.surface == b.surface) return Order::same;
   if (a.depth.hi < b.depth.lo) return Order::before;
   if (a.depth.lo > b.depth.hi) return Order::after;
+  if (a.surface.is_whole() || b.surface.is_whole()) return Order::unknown;
   for (const bool first : {true, false}) {
     const SpanEnd& end = first ? a : b;
     if (!end.surface.is_plane()) continue;
@@ -408,6 +466,7 @@ Met quadric_met(const BeamView& view, const BeamSurface& s, SignOracle& oracle) 
 
 Met decide_met(const BeamView& view, const LeafSpan& span, LeafPlace place, SignOracle& oracle) {
   if (span.certain) return Met::yes;
+  if (span.entering.size() == 1 && span.entering[0].surface.is_whole()) return Met::unknown;
   if (span.start_open) {
     // make_span() found a sign open that it could not ask for.
     const auto& leaf = std::get<ConvexLeaf>(view.solid(place.solid).leaf(place.leaf).shape);

@@ -1,7 +1,9 @@
-// leaf_span.h — where the rays through a part of the picture are inside a convex leaf
+// leaf_span.h — where the rays through a part of the picture are inside a leaf
 // What       make_span() bounds the depths at which all rays through a rectangle enter and leave a leaf that is planes
 //            and at most one quadric (csg_leaf.h: spheres, boxes, cylinders, cones, convex polyhedra). Of each end it
 //            keeps the surfaces that may make it. What the bounds leave open, SignOracle asks as signs of polynomials.
+//            Of any other leaf it is known where slices of the beam are certainly outside or inside, no more: its
+//            surface is one, whatever face of it a ray meets, and its order before others only where bounds are apart.
 // Guarantee  along every ray through the rectangle for which the oracle's assumptions hold, the leaf is entered and
 //            left within the bounds or missed; nothing is missed if `certain` (tests/beam/region_look_test.cpp)
 #pragma once
@@ -19,13 +21,18 @@ namespace arris {
 struct BeamSurface {
   // What a ray does at a quadric: enters from outside at the nearer root, leaves it again at the farther one; leaves
   // it having started inside; enters a cone's half having started in the other half.
-  enum class Root : std::uint8_t { none, nearer, farther, leaving, other_half };
+  // whole: the surface of a leaf that is not convex, and `index` is the leaf.
+  enum class Root : std::uint8_t { none, nearer, farther, leaving, other_half, whole };
   std::uint32_t solid = 0, index = 0;
   Root root = Root::none;  // none: a plane
 
   friend bool operator==(const BeamSurface&, const BeamSurface&) = default;
   [[nodiscard]] bool is_plane() const { return root == Root::none; }
+  [[nodiscard]] bool is_whole() const { return root == Root::whole; }
 };
+
+// The face of a leaf that is seen as a whole.
+inline constexpr std::uint32_t kAnyFace = ~std::uint32_t{0};
 
 // Which polynomial: of one surface, or of two.
 struct SignKey {
@@ -134,7 +141,6 @@ struct LeafPlace {
 };
 
 // The depths in which we are interested end at `depth_end`. Nothing: no ray meets the leaf before it.
-// Precondition: the leaf is a ConvexLeaf.
 std::optional<LeafSpan> make_span(const BeamView& view, LeafPlace place, double depth_end,
                                   const SignOracle& oracle);
 

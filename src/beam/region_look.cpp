@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <iterator>
 #include <optional>
+#include <ranges>
 
 namespace arris {
 namespace {
@@ -183,7 +184,9 @@ class Looker {
   // Does the assumption change what is known of the leaf's span?
   [[nodiscard]] bool concerns(const Assumption& assumption, const LeafPlace& place) const {
     if (assumption.key.solid_a != place.solid) return false;
-    const auto& leaf = std::get<ConvexLeaf>(view_.solid(place.solid).leaf(place.leaf).shape);
+    const auto* convex = std::get_if<ConvexLeaf>(&view_.solid(place.solid).leaf(place.leaf).shape);
+    if (convex == nullptr) return false;
+    const ConvexLeaf& leaf = *convex;
     if (is_of_plane(assumption)) {
       return std::ranges::any_of(leaf.planes,
                                  [&](PlaneRef ref) { return ref.plane == assumption.key.index_a; });
@@ -355,12 +358,12 @@ class Looker {
   }
 
   void advance(std::vector<Event>& events, const std::vector<std::size_t>& done) {
-    for (auto at = done.rbegin(); at != done.rend(); ++at) {
-      Event& event = events[*at];
+    for (const std::size_t at : std::ranges::reverse_view(done)) {
+      Event& event = events[at];
       if (event.entering) {
         event = {event.index, false, window_slots_[event.index]->span->leave, std::nullopt};
       } else {
-        events.erase(events.begin() + std::ptrdiff_t(*at));
+        events.erase(events.begin() + std::ptrdiff_t(at));
       }
     }
   }

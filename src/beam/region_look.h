@@ -7,7 +7,8 @@
 // Guarantee  at every point of the rectangle that follows the tree's signs to a surface, the ray meets that surface
 //            first; `nothing` likewise. What could not be decided ends in `unknown`, with all the surfaces that may
 //            be seen there. (tests/beam/region_look_test.cpp)
-// Limits     where two quadrics may be met in either order, the end is unknown: cut the rectangle
+// Limits     where two quadrics, or anything and a leaf that is not convex, may be met in either order, the end is
+//            unknown: cut the rectangle
 // Cost       one span for each leaf, and again for each sign that is followed both ways
 #pragma once
 
@@ -69,7 +70,7 @@ struct LookOptions {
 std::vector<BeamPart> prune_parts(const BeamView& view, const std::vector<BeamPart>& parts,
                                   const Rect& rect, double depth_end);
 
-// Precondition: `parts` are undecided and convex leaves only.
+// Precondition: `parts` are undecided.
 LookTree look(const BeamView& view, const std::vector<BeamPart>& parts, const Rect& rect,
               double depth_end, const LookOptions& options = {});
 

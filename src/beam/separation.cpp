@@ -49,8 +49,9 @@ Simple make_box(const Box3d& b) {
 
 Simple make_simple(const CsgSolid& solid, std::uint32_t index) {
   const PlacedLeaf& placed = solid.leaf(index);
-  const auto& leaf = std::get<ConvexLeaf>(placed.shape);
-  if (!leaf.quadric) return make_box(placed.bounds);
+  const auto* convex = std::get_if<ConvexLeaf>(&placed.shape);
+  if (convex == nullptr || !convex->quadric) return make_box(placed.bounds);
+  const ConvexLeaf& leaf = *convex;
   const CsgQuadric& quadric = solid.surfaces().quadrics()[*leaf.quadric];
   if (quadric.form == CsgQuadric::Form::ellipsoid) return {quadric.unit_from_object, Ball{}};
   // The caps' heights in the quadric's frame.

@@ -3,20 +3,41 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 namespace arris {
 
+namespace {
+
+std::vector<std::optional<PlacedLeaf>> place_leaves(const CsgTree& tree, SurfaceTable& surfaces) {
+  std::vector<std::optional<PlacedLeaf>> placed;
+  placed.reserve(tree.leaves.size());
+  for (const CsgLeaf& leaf : tree.leaves) placed.push_back(place_leaf(leaf, surfaces));
+  return placed;
+}
+
+}  // namespace
+
 CsgSolid::CsgSolid(const CsgTree& tree) {
+  set(tree, place_leaves(tree, surfaces_));
+}
+
+CsgSolid::CsgSolid(const CsgTree& nodes, std::vector<std::optional<PlacedLeaf>> leaves,
+                   SurfaceTable surfaces)
+    : surfaces_(std::move(surfaces)) {
+  set(nodes, std::move(leaves));
+}
+
+void CsgSolid::set(const CsgTree& nodes, std::vector<std::optional<PlacedLeaf>> leaves) {
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
-  std::vector<bool> exists(tree.leaves.size());
-  leaves_.reserve(tree.leaves.size());
-  for (std::size_t i = 0; i < tree.leaves.size(); ++i) {
-    std::optional<PlacedLeaf> placed = place_leaf(tree.leaves[i], surfaces_);
-    exists[i] = placed.has_value();
-    leaves_.push_back(placed ? std::move(*placed)
-                             : PlacedLeaf{{}, {Vec3d(kInfinity), Vec3d(-kInfinity)}, {}});
+  std::vector<bool> exists;
+  leaves_.reserve(leaves.size());
+  for (std::optional<PlacedLeaf>& leaf : leaves) {
+    exists.push_back(leaf.has_value());
+    leaves_.push_back(leaf ? std::move(*leaf)
+                           : PlacedLeaf{{}, {Vec3d(kInfinity), Vec3d(-kInfinity)}, {}});
   }
-  root_ = CsgExpression(tree, exists);
+  root_ = CsgExpression(nodes, exists);
   bounds_ = root_.bounds(boxes_of(root_));
 }
 

@@ -13,6 +13,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -34,6 +35,9 @@ struct CsgBoundary {
 class CsgSolid {
  public:
   explicit CsgSolid(const CsgTree& tree);
+  // Of the tree's nodes, with leaves that are placed already; nothing: without points. Errors: as above.
+  CsgSolid(const CsgTree& nodes, std::vector<std::optional<PlacedLeaf>> leaves,
+           SurfaceTable surfaces);
 
   [[nodiscard]] const CsgExpression& root() const { return root_; }
   // By number in the tree; those without points have empty bounds and are in no expression.
@@ -58,6 +62,8 @@ class CsgSolid {
   [[nodiscard]] Vec3d outward_normal(const CsgBoundary& boundary, const Ray& ray) const;
 
  private:
+  void set(const CsgTree& nodes, std::vector<std::optional<PlacedLeaf>> leaves);
+
   SurfaceTable surfaces_;
   std::vector<PlacedLeaf> leaves_;
   CsgExpression root_;

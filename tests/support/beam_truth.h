@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "beam/beam_tracer.h"
+#include "beam/convex_solid.h"
 #include "support/csg_oracle.h"
 
 namespace arris::test {
@@ -28,6 +29,12 @@ struct BeamScene {
   void add(const CsgTree& tree, const Affine3d& world_from_object = {}) {
     solids.reserve(16);
     solids.emplace_back(tree);
+    placed.push_back({&solids.back(), inverse(world_from_object)});
+  }
+  // Leaves that aren't convex are cut where they can be.
+  void add_any(const CsgTree& tree, const Affine3d& world_from_object = {}) {
+    solids.reserve(16);
+    solids.push_back(make_convex_solid(tree));
     placed.push_back({&solids.back(), inverse(world_from_object)});
   }
 };
@@ -58,7 +65,7 @@ inline TruthHit see(const BeamScene& scene, double x, double y) {
                   transform_vector(s.object_from_world, direction)};
     for (const CsgBoundary& b : search.find(*s.solid, view_of(s.solid->root()), ray)) {
       if (b.t <= 0) continue;
-      if (b.t < hit.depth) hit = {SeenSurface{i, b.leaf, b.face, {}, b.entering}, b.t};
+      if (b.t < hit.depth) hit = {surface_of(i, *s.solid, b), b.t};
       break;
     }
   }
@@ -67,8 +74,8 @@ inline TruthHit see(const BeamScene& scene, double x, double y) {
 
 // Spheres, boxes, cylinders, cones, convex polyhedra, half-spaces.
 inline CsgPrimitive random_convex(CsgRandom& random) {
-  constexpr int kinds[] = {0, 1, 2, 2, 4, 10};
-  return random_primitive(random, kinds[random() % 6]);
+  constexpr int kKinds[] = {0, 1, 2, 2, 4, 10};
+  return random_primitive(random, kKinds[random() % 6]);
 }
 
 // As random_tree(), of convex leaves.
