@@ -94,21 +94,14 @@ BeamRule parse_beam_rule(const Arguments& arguments, Integrator integrator) {
   return kRules[parse_choice(*given, {"certified", "corners"})];
 }
 
-// The beam renderer goes through the picture once, and takes no meshes.
+// The beam renderer goes through the picture once.
 void check_beam_options(const Arguments& arguments) {
   for (const char* option : {"--time", "--checkpoint"}) {
     if (!arguments.has(option)) continue;
     throw Error(Error::Kind::input, option,
                 "can't be used with --integrator beam, which makes its picture in one pass; leave "
                 "it out or use --integrator path");
-  }
-  const auto ground = find_given(arguments, "--ground");
-  if (ground && ground->text == "on") {
-    throw Error(Error::Kind::input, "--ground",
-                "is a mesh, and --integrator beam takes CSG solids only; use --ground off or "
-                "--integrator path");
-  }
-}
+  }}
 
 std::vector<std::string> parse_aovs(const Arguments& arguments, Integrator integrator) {
   const auto given = find_given(arguments, "--aov");
@@ -183,7 +176,7 @@ RenderRequest make_render_request(const Arguments& arguments) {
   if (request.integrator == Integrator::beam) check_beam_options(arguments);
   request.aovs = parse_aovs(arguments, request.integrator);
   request.stage = make_stage_options(arguments);
-  if (request.integrator == Integrator::beam) request.stage.ground = false;
+  request.stage.rounded = request.integrator != Integrator::beam;  // which sees meshes as they are
   request.samples = make_samples(arguments);
   request.is_part = arguments.has("--samples");
   request.threads = threads_of(arguments);

@@ -9,6 +9,8 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr std::size_t kMostLights = 32;
+// Each lit plane has a view and lists of its own: too dear for the facets of a large mesh.
+constexpr std::size_t kMostLitFacets = 256;
 
 Sign sign_of(double x) {
   return x > 0 ? Sign::positive : x < 0 ? Sign::negative : Sign::unknown;
@@ -30,7 +32,7 @@ double depth_of(const PlaneForm& plane, const Rect& rect) {
 double diameter_of(std::span<const BeamSolid> solids) {
   Box3d all{Vec3d(kInfinity), Vec3d(-kInfinity)};
   for (const BeamSolid& s : solids) {
-    const Box3d& own = s.solid->bounds();
+    const Box3d& own = s.bounds();
     if (own.is_empty()) continue;
     const Affine3d world_from_object = inverse(s.object_from_world);
     all = hull(all, box_of(map_cell(world_from_object, make_cell(own))));
@@ -96,7 +98,9 @@ bool ShadowLooker::add_shadows(LookTree& tree, const Rect& rect, ShadowLists& li
   std::vector<std::uint32_t> surfaces;
   for (std::uint32_t i = 0; i < tree.nodes.size(); ++i) {
     const LookNode& node = tree.nodes[i];
-    if (node.kind == LookNode::Kind::surface && node.seen.surface.is_plane()) surfaces.push_back(i);
+    if (node.kind != LookNode::Kind::surface || !node.seen.surface.is_plane()) continue;
+    const BeamMesh* mesh = solids_[node.seen.solid].mesh;
+    if (mesh == nullptr || mesh->facets().size() <= kMostLitFacets) surfaces.push_back(i);
   }
   for (std::uint32_t light = 0; light < lights_.size(); ++light) {
     std::vector<std::uint32_t> ends;
@@ -123,8 +127,7 @@ bool ShadowLooker::add_shadows(LookTree& tree, const Rect& rect, ShadowLists& li
 namespace {
 
 // A leaf that ends at the plane and lies behind it is not in the light's way.
-bool is_behind(const PlacedLeaf& leaf, std::uint32_t plane, Sign light_side) {
-  const auto* convex = std::get_if<ConvexLeaf>(&leaf.shape);
+bool is_behind(const ConvexLeaf* convex, std::uint32_t plane, Sign light_side) {
   return convex != nullptr && std::ranges::any_of(convex->planes, [&](PlaneRef ref) {
     return ref.plane == plane && (light_side == Sign::positive) == !ref.flipped;
   });
@@ -141,12 +144,12 @@ const ShadowLists::List& ShadowLooker::list_for(LitPlane lit, std::uint32_t ligh
   const Sign light_side = side_of_light(lit, light);
   std::vector<BeamPart> roots;
   for (std::uint32_t i = 0; i < solids_.size(); ++i) {
-    const CsgSolid& solid = *solids_[i].solid;
+    const BeamSolid& solid = solids_[i];
     CsgExpression root = solid.root();
     if (i == lit.solid && !root.is_decided()) {
       std::vector<Cover> covers;
       for (const std::uint32_t leaf : root.leaves()) {
-        covers.push_back(is_behind(solid.leaf(leaf), lit.plane, light_side) ? Cover::out
+        covers.push_back(is_behind(solid.convex(leaf), lit.plane, light_side) ? Cover::out
                                                                             : Cover::on);
       }
       root = root.prune(covers);
@@ -160,7 +163,7 @@ const ShadowLists::List& ShadowLooker::list_for(LitPlane lit, std::uint32_t ligh
 
 Sign ShadowLooker::side_of_light(LitPlane lit, std::uint32_t light) const {
   const BeamSolid& solid = solids_[lit.solid];
-  const CsgPlane& plane = solid.solid->surfaces().planes()[lit.plane];
+  const CsgPlane& plane = solid.planes()[lit.plane];
   const LightPlace& place = lights_[light];
   if (!place.is_directional) {
     return side_of(plane, transform_point(solid.object_from_world, place.position));
@@ -171,7 +174,7 @@ Sign ShadowLooker::side_of_light(LitPlane lit, std::uint32_t light) const {
 std::optional<LookTree> ShadowLooker::look_from_light(LitPlane lit, std::uint32_t light,
                                                       const Rect& rect, ShadowLists& lists) const {
   const BeamSolid& solid = solids_[lit.solid];
-  const CsgPlane& plane = solid.solid->surfaces().planes()[lit.plane];
+  const CsgPlane& plane = solid.planes()[lit.plane];
   const Sign eye_side = side_of(plane, transform_point(solid.object_from_world, eye_.position));
   if (eye_side * side_of_light(lit, light) != Sign::positive) return std::nullopt;
   const ShadowLists::List& list = list_for(lit, light, lists);

@@ -4,7 +4,7 @@
 //            the light meets; the signs it depends on go on below the surface's node.
 // Guarantee  where a node's lit_known has a light's bit, its lit has it exactly where the light reaches the surface.
 //            Lights behind a surface count as lit: they do nothing there (tests/beam/beam_shadow_test.cpp)
-// Limits     curved surfaces stay unknown: their shadows are for rays
+// Limits     curved surfaces stay unknown, and so do facets of meshes that have many: their shadows are for rays
 // Cost       one look for each flat surface and light in a region; lists of what may cast shadows are made once for
 //            each tile
 #pragma once

@@ -4,9 +4,9 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <variant>
 
 #include "base/parallel_for.h"
+#include "beam/ray_sight.h"
 
 namespace arris {
 namespace {
@@ -30,15 +30,6 @@ void BeamStats::add(const BeamStats& other) {
   pixels += other.pixels;
   uncertified_pixels += other.uncertified_pixels;
   certified_area += other.certified_area;
-}
-
-SeenSurface surface_of(std::uint32_t index, const CsgSolid& solid, const CsgBoundary& boundary) {
-  SeenSurface seen{index, boundary.leaf, boundary.face, {}, boundary.entering};
-  if (!std::holds_alternative<ConvexLeaf>(solid.leaf(boundary.leaf).shape)) {
-    seen.face = kAnyFace;
-    seen.surface = {index, boundary.leaf, BeamSurface::Root::whole};
-  }
-  return seen;
 }
 
 // One tile under way.
@@ -91,8 +82,7 @@ class BeamTracer::Tracer {
   [[nodiscard]] double least_region(const std::vector<BeamPart>& parts) const {
     const bool any_whole = std::ranges::any_of(parts, [&](const BeamPart& part) {
       return std::ranges::any_of(part.expression.leaves(), [&](std::uint32_t leaf) {
-        const PlacedLeaf& placed = shared_.view_.solid(part.solid).leaf(leaf);
-        return !std::holds_alternative<ConvexLeaf>(placed.shape);
+        return shared_.solids_[part.solid].is_whole(leaf);
       });
     });
     const BeamOptions& options = shared_.options_;
@@ -170,14 +160,14 @@ class BeamTracer::Tracer {
 
   void add_all_faces(const BeamPart& part, PixelSurface open) {
     for (const std::uint32_t leaf : part.expression.leaves()) {
-      const auto* convex =
-          std::get_if<ConvexLeaf>(&shared_.view_.solid(part.solid).leaf(leaf).shape);
+      const BeamSolid& solid = shared_.solids_[part.solid];
+      const ConvexLeaf* convex = solid.convex(leaf);
       const std::size_t faces =
           convex == nullptr ? 1 : convex->planes.size() + (convex->quadric ? 1 : 0);
       for (std::uint32_t face = 0; face < faces; ++face) {
         for (const bool entering : {true, false}) {
-          open.seen =
-              SeenSurface{part.solid, leaf, convex == nullptr ? kAnyFace : face, {}, entering};
+          const std::uint32_t number = solid.is_whole(leaf) ? kAnyFace : face;
+          open.seen = SeenSurface{part.solid, leaf, number, {}, entering};
           add(open);
         }
       }
@@ -186,25 +176,9 @@ class BeamTracer::Tracer {
 
   [[nodiscard]] std::optional<SeenSurface> seen_by_ray(const std::vector<BeamPart>& parts,
                                                        Vec2d at) const {
-    const EyeRays& eye = shared_.eye_;
-    const Vec3d direction = eye.corner + eye.step_x * at.x + eye.step_y * at.y;
-    thread_local BoundarySearch search;
-    std::optional<SeenSurface> seen;
-    double nearest = kInfinity;
-    for (const BeamPart& part : parts) {
-      const BeamSolid& solid = shared_.solids_[part.solid];
-      const Ray ray{transform_point(solid.object_from_world, eye.position),
-                    transform_vector(solid.object_from_world, direction)};
-      for (const CsgBoundary& b : search.find(*solid.solid, view_of(part.expression), ray)) {
-        if (b.t <= 0) continue;
-        if (b.t < nearest) {
-          nearest = b.t;
-          seen = surface_of(part.solid, *solid.solid, b);
-        }
-        break;
-      }
-    }
-    return seen;
+    const std::optional<RaySight> sight =
+        see(shared_.solids_, parts, ray_through(shared_.eye_, at));
+    return sight ? std::optional(sight->seen) : std::nullopt;
   }
 
   static bool same(const PixelSurface& a, const PixelSurface& b) {
@@ -278,7 +252,7 @@ std::vector<BeamTile> BeamTracer::make_tiles() const {
   while (side < std::max(width_px_, height_px_)) side *= 2;
   whole.rect = {0, 0, side, side};
   for (std::uint32_t i = 0; i < solids_.size(); ++i) {
-    const CsgExpression& root = solids_[i].solid->root();
+    const CsgExpression& root = solids_[i].root();
     if (!root.is_decided()) whole.parts.push_back({i, root});
   }
   std::vector<BeamTile> level{std::move(whole)};

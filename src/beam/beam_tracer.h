@@ -63,9 +63,6 @@ struct BeamTile {
   std::vector<BeamPart> parts;
 };
 
-// What a ray meets, as beams name it: leaves that aren't convex have one surface.
-SeenSurface surface_of(std::uint32_t index, const CsgSolid& solid, const CsgBoundary& boundary);
-
 class BeamTracer {
  public:
   // `solids` and `lights` must outlive the tracer.

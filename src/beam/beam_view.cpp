@@ -79,6 +79,21 @@ QuadricForm make_form(const ViewFrame& frame, const CsgQuadric& quadric) {
   return form;
 }
 
+// Origin fixed: direction · ((a - o) × (b - o)). Direction fixed: the same for the point origin / weight, times weight:
+// weight d·(a × b) - origin · ((a - b) × d).
+Linear make_side(const ViewFrame& frame, const BeamMesh::Edge& edge) {
+  const Vec3i a = to_intervals(edge.a), b = to_intervals(edge.b);
+  const auto dot_linear = [](const LinearVec& v, const Vec3i& n) {
+    return v.x * n.x + v.y * n.y + v.z * n.z;
+  };
+  if (frame.direction_fixed) {
+    const Vec3i d{frame.direction.x.c, frame.direction.y.c, frame.direction.z.c};
+    return frame.weight * dot(d, cross(a, b)) - dot_linear(frame.origin, cross(a - b, d));
+  }
+  const Vec3i o{frame.origin.x.c, frame.origin.y.c, frame.origin.z.c};
+  return dot_linear(frame.direction, cross(a - o, b - o));
+}
+
 ViewFrame make_eye_frame(const EyeRays& eye, const BeamSolid& solid) {
   const Affine3d& m = solid.object_from_world;
   ViewFrame frame;
@@ -211,7 +226,7 @@ constexpr double kWindowMargin = 1e-7;
 LeafWindow BeamView::make_window(std::uint32_t solid, std::uint32_t leaf) const {
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   const LeafWindow everywhere{-kInfinity, -kInfinity, kInfinity, kInfinity};
-  const Box3d& box = this->solid(solid).leaf(leaf).bounds;
+  const Box3d& box = this->solid(solid).leaf_box(leaf);
   if (!is_finite(box.low) || !is_finite(box.high)) return everywhere;
   const Projection& map = projections_[solid];
   LeafWindow window{kInfinity, kInfinity, -kInfinity, -kInfinity, kInfinity, 0};
@@ -260,15 +275,23 @@ const PlaneForm& BeamView::remembered_plane(std::uint32_t solid, std::uint32_t i
   const std::uint64_t key = std::uint64_t(solid) << 32U | index;
   const auto known = asked_planes_.find(key);
   if (known != asked_planes_.end()) return known->second;
-  const CsgPlane& plane = this->solid(solid).surfaces().planes()[index];
+  const CsgPlane& plane = this->solid(solid).planes()[index];
   return asked_planes_.emplace(key, make_form(frames_[solid], plane)).first->second;
+}
+
+const Linear& BeamView::remembered_side(std::uint32_t solid, std::uint32_t edge) const {
+  const std::uint64_t key = std::uint64_t(solid) << 32U | edge;
+  const auto known = asked_sides_.find(key);
+  if (known != asked_sides_.end()) return known->second;
+  const BeamMesh::Edge& ends = this->solid(solid).mesh->edges()[edge];
+  return asked_sides_.emplace(key, make_side(frames_[solid], ends)).first->second;
 }
 
 const QuadricForm& BeamView::remembered_quadric(std::uint32_t solid, std::uint32_t index) const {
   const std::uint64_t key = std::uint64_t(solid) << 32U | index;
   const auto known = asked_quadrics_.find(key);
   if (known != asked_quadrics_.end()) return known->second;
-  const CsgQuadric& quadric = this->solid(solid).surfaces().quadrics()[index];
+  const CsgQuadric& quadric = this->solid(solid).quadric(index);
   return asked_quadrics_.emplace(key, make_form(frames_[solid], quadric)).first->second;
 }
 
@@ -278,12 +301,17 @@ BeamView::BeamView(std::span<const BeamSolid> solids, const EyeRays& eye)
   for (const BeamSolid& solid : solids) {
     const ViewFrame frame = make_eye_frame(eye, solid);
     std::vector<PlaneForm>& planes = planes_.emplace_back();
-    for (const CsgPlane& plane : solid.solid->surfaces().planes()) {
+    for (const CsgPlane& plane : solid.planes()) {
       planes.push_back(make_form(frame, plane));
     }
     std::vector<QuadricForm>& quadrics = quadrics_.emplace_back();
-    for (const CsgQuadric& quadric : solid.solid->surfaces().quadrics()) {
-      quadrics.push_back(make_form(frame, quadric));
+    std::vector<Linear>& sides = sides_.emplace_back();
+    if (solid.mesh != nullptr) {
+      for (const BeamMesh::Edge& edge : solid.mesh->edges()) sides.push_back(make_side(frame, edge));
+    } else {
+      for (const CsgQuadric& quadric : solid.solid->surfaces().quadrics()) {
+        quadrics.push_back(make_form(frame, quadric));
+      }
     }
     frames_.push_back(frame);
     const Affine3d world_from_object = inverse(solid.object_from_world);
@@ -304,7 +332,7 @@ BeamView::BeamView(std::span<const BeamSolid> solids, const EyeRays& eye, LitPla
                    const LightPlace& light, double reach)
     : solids_(solids) {
   const BeamSolid& of = solids[lit.solid];
-  const CsgPlane& lit_plane = of.solid->surfaces().planes()[lit.plane];
+  const CsgPlane& lit_plane = of.planes()[lit.plane];
   const PlaneForm plane = make_form(make_eye_frame(eye, of), lit_plane);
   const LitPoints points = make_lit_points(plane);
   // The plane in the world: its normal goes with the transpose of the map into the solid's space.

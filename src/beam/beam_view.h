@@ -16,24 +16,22 @@
 #include <unordered_map>
 #include <vector>
 
+#include "beam/beam_solid.h"
 #include "beam/polynomial.h"
-#include "csg/csg_solid.h"
 
 namespace arris {
 
 using LinearVec = Vec3<Linear>;
-
-// A solid where it stands.
-struct BeamSolid {
-  const CsgSolid* solid = nullptr;
-  Affine3d object_from_world;
-};
 
 // The eye: world rays through picture points, position + depth (corner + x step_x + y step_y).
 struct EyeRays {
   Vec3d position;
   Vec3d corner, step_x, step_y;
 };
+
+inline Ray ray_through(const EyeRays& eye, Vec2d at) {
+  return {eye.position, eye.corner + eye.step_x * at.x + eye.step_y * at.y};
+}
 
 // Rays in the space of one solid.
 struct ViewFrame {
@@ -57,6 +55,8 @@ struct QuadricForm {
 };
 
 PlaneForm make_form(const ViewFrame& frame, const CsgPlane& plane);
+// On which side rays pass the line from a to b: positive where direction · ((a - origin) × (b - origin)) is.
+Linear make_side(const ViewFrame& frame, const BeamMesh::Edge& edge);
 QuadricForm make_form(const ViewFrame& frame, const CsgQuadric& quadric);
 
 ViewFrame make_eye_frame(const EyeRays& eye, const BeamSolid& solid);
@@ -101,7 +101,7 @@ class BeamView {
   BeamView(std::span<const BeamSolid> solids, const EyeRays& eye, LitPlane lit,
            const LightPlace& light, double reach);
 
-  [[nodiscard]] const CsgSolid& solid(std::uint32_t index) const { return *solids_[index].solid; }
+  [[nodiscard]] const BeamSolid& solid(std::uint32_t index) const { return solids_[index]; }
   [[nodiscard]] std::size_t solid_count() const { return solids_.size(); }
   [[nodiscard]] bool direction_fixed() const { return frames_[0].direction_fixed; }
   // Of a leaf in the picture; rays outside miss it.
@@ -113,6 +113,10 @@ class BeamView {
   // A light's view remembers what it was asked: for one thread at a time.
   [[nodiscard]] const PlaneForm& plane(std::uint32_t solid, std::uint32_t index) const {
     return planes_.empty() ? remembered_plane(solid, index) : planes_[solid][index];
+  }
+  // Of a mesh's edge.
+  [[nodiscard]] const Linear& side(std::uint32_t solid, std::uint32_t edge) const {
+    return sides_.empty() ? remembered_side(solid, edge) : sides_[solid][edge];
   }
   [[nodiscard]] const QuadricForm& quadric(std::uint32_t solid, std::uint32_t index) const {
     return quadrics_.empty() ? remembered_quadric(solid, index) : quadrics_[solid][index];
@@ -126,6 +130,7 @@ class BeamView {
   };
   [[nodiscard]] LeafWindow make_window(std::uint32_t solid, std::uint32_t leaf) const;
   [[nodiscard]] const PlaneForm& remembered_plane(std::uint32_t solid, std::uint32_t index) const;
+  [[nodiscard]] const Linear& remembered_side(std::uint32_t solid, std::uint32_t edge) const;
   [[nodiscard]] const QuadricForm& remembered_quadric(std::uint32_t solid,
                                                       std::uint32_t index) const;
 
@@ -136,6 +141,8 @@ class BeamView {
   std::vector<std::vector<LeafWindow>> windows_;
   std::vector<std::vector<PlaneForm>> planes_;
   std::vector<std::vector<QuadricForm>> quadrics_;
+  std::vector<std::vector<Linear>> sides_;
+  mutable std::unordered_map<std::uint64_t, Linear> asked_sides_;
   mutable std::unordered_map<std::uint64_t, PlaneForm> asked_planes_;
   mutable std::unordered_map<std::uint64_t, QuadricForm> asked_quadrics_;
 };

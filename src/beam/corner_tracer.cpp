@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "base/parallel_for.h"
+#include "beam/ray_sight.h"
 #include "beam/separation.h"
 
 namespace arris {
@@ -75,10 +76,9 @@ class CornerTracer::Tracer {
   }
 
   [[nodiscard]] Ray ray_at(std::uint32_t solid, Vec2d at) const {
-    const EyeRays& eye = shared_.eye_;
     const Affine3d& m = shared_.solids_[solid].object_from_world;
-    return {transform_point(m, eye.position),
-            transform_vector(m, eye.corner + eye.step_x * at.x + eye.step_y * at.y)};
+    const Ray world = ray_through(shared_.eye_, at);
+    return {transform_point(m, world.origin), transform_vector(m, world.direction)};
   }
 
   // Corners are common to up to four regions.
@@ -86,19 +86,9 @@ class CornerTracer::Tracer {
     const auto [known, is_new] = seen_.try_emplace({at.x, at.y});
     if (!is_new) return known->second;
     ++stats_.rays;
-    double nearest = kInfinity;
-    for (const BeamPart& part : parts) {
-      const CsgSolid& solid = *shared_.solids_[part.solid].solid;
-      const Ray ray = ray_at(part.solid, at);
-      for (const CsgBoundary& b : search_.find(solid, view_of(part.expression), ray)) {
-        if (b.t <= 0) continue;
-        if (b.t < nearest) {
-          nearest = b.t;
-          known->second = surface_of(part.solid, solid, b);
-        }
-        break;
-      }
-    }
+    const std::optional<RaySight> sight =
+        arris::see(shared_.solids_, parts, ray_through(shared_.eye_, at));
+    if (sight) known->second = sight->seen;
     return known->second;
   }
 
@@ -106,10 +96,15 @@ class CornerTracer::Tracer {
   std::vector<BareCrossing> cross_all(const std::vector<BeamPart>& parts, Vec2d at) {
     std::vector<BareCrossing> all;
     for (const BeamPart& part : parts) {
-      const CsgSolid& solid = *shared_.solids_[part.solid].solid;
+      const BeamSolid& solid = shared_.solids_[part.solid];
       const Ray ray = ray_at(part.solid, at);
       for (const std::uint32_t leaf : part.expression.leaves()) {
-        for (const Crossing& c : crossings_.find(solid.leaf(leaf), solid.surfaces(), ray)) {
+        if (solid.mesh != nullptr) {
+          if (const auto t = solid.mesh->meet(leaf, ray)) all.push_back({*t, part.solid, leaf, 0});
+          continue;
+        }
+        for (const Crossing& c :
+             crossings_.find(solid.solid->leaf(leaf), solid.solid->surfaces(), ray)) {
           if (c.t > 0 && c.t < kInfinity) all.push_back({c.t, part.solid, leaf, c.face});
         }
       }
@@ -180,7 +175,6 @@ class CornerTracer::Tracer {
   const std::function<void(const BeamPixel&)>& sink_;
   std::map<std::pair<double, double>, std::optional<SeenSurface>> seen_;
   std::vector<PixelSurface> surfaces_;
-  BoundarySearch search_;
   LeafCrossings crossings_;
   BeamStats stats_;
 };
@@ -203,7 +197,7 @@ std::vector<BeamPart> CornerTracer::parts_in(const std::vector<BeamPart>& parts,
     }
     std::vector<Cover> covers;
     for (const std::uint32_t leaf : part.expression.leaves()) {
-      covers.push_back(is_separated(beam, *solids_[part.solid].solid, leaf) ? Cover::out
+      covers.push_back(is_separated(beam, solids_[part.solid], leaf) ? Cover::out
                                                                             : Cover::on);
     }
     BeamPart pruned{part.solid, part.expression.prune(covers)};
@@ -220,7 +214,7 @@ std::vector<BeamTile> CornerTracer::make_tiles() const {
   }
   std::vector<BeamPart> roots;
   for (std::uint32_t i = 0; i < solids_.size(); ++i) {
-    const CsgExpression& root = solids_[i].solid->root();
+    const CsgExpression& root = solids_[i].root();
     if (!root.is_decided()) roots.push_back({i, root});
   }
   parallel_for(tiles.size(), {.threads = options_.threads},

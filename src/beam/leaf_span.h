@@ -4,6 +4,7 @@
 //            keeps the surfaces that may make it. What the bounds leave open, SignOracle asks as signs of polynomials.
 //            Of any other leaf it is known where slices of the beam are certainly outside or inside, no more: its
 //            surface is one, whatever face of it a ray meets, and its order before others only where bounds are apart.
+//            A facet of a mesh (beam_mesh.h) is entered at its plane, for good.
 // Guarantee  along every ray through the rectangle for which the oracle's assumptions hold, the leaf is entered and
 //            left within the bounds or missed; nothing is missed if `certain` (tests/beam/region_look_test.cpp)
 #pragma once
@@ -44,6 +45,7 @@ struct SignKey {
     curvature,
     discriminant,
     along,
+    side,  // of a mesh's edge
     tangent_low,
     tangent_high,
     plane_plane,
@@ -132,6 +134,8 @@ struct LeafSpan {
   std::vector<SpanEnd> entering,
       leaving;                         // the last of `entering` is where, the first of `leaving`
   std::optional<BeamSurface> quadric;  // that a ray must meet to meet the leaf
+  // Of a facet: whether its edges must be passed on the positive side, or on the negative one.
+  std::optional<bool> facet_positive;
 
   [[nodiscard]] Interval on() const { return {starts_inside ? leave.lo : enter.lo, leave.hi}; }
 };

@@ -184,9 +184,14 @@ class Looker {
   // Does the assumption change what is known of the leaf's span?
   [[nodiscard]] bool concerns(const Assumption& assumption, const LeafPlace& place) const {
     if (assumption.key.solid_a != place.solid) return false;
-    const auto* convex = std::get_if<ConvexLeaf>(&view_.solid(place.solid).leaf(place.leaf).shape);
-    if (convex == nullptr) return false;
-    const ConvexLeaf& leaf = *convex;
+    const BeamSolid& solid = view_.solid(place.solid);
+    if (solid.is_whole(place.leaf)) return false;
+    if (solid.mesh != nullptr) {
+      if (is_of_plane(assumption)) return assumption.key.index_a == place.leaf;
+      const auto& edges = solid.mesh->facets()[place.leaf].edges;
+      return std::ranges::find(edges, assumption.key.index_a) != edges.end();
+    }
+    const ConvexLeaf& leaf = *solid.convex(place.leaf);
     if (is_of_plane(assumption)) {
       return std::ranges::any_of(leaf.planes,
                                  [&](PlaneRef ref) { return ref.plane == assumption.key.index_a; });

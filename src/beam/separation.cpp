@@ -47,10 +47,10 @@ Simple make_box(const Box3d& b) {
   return {{}, corners};
 }
 
-Simple make_simple(const CsgSolid& solid, std::uint32_t index) {
-  const PlacedLeaf& placed = solid.leaf(index);
-  const auto* convex = std::get_if<ConvexLeaf>(&placed.shape);
-  if (convex == nullptr || !convex->quadric) return make_box(placed.bounds);
+Simple make_simple(const BeamSolid& beam_solid, std::uint32_t index) {
+  const ConvexLeaf* convex = beam_solid.convex(index);
+  if (convex == nullptr || !convex->quadric) return make_box(beam_solid.leaf_box(index));
+  const CsgSolid& solid = *beam_solid.solid;
   const ConvexLeaf& leaf = *convex;
   const CsgQuadric& quadric = solid.surfaces().quadrics()[*leaf.quadric];
   if (quadric.form == CsgQuadric::Form::ellipsoid) return {quadric.unit_from_object, Ball{}};
@@ -64,7 +64,7 @@ Simple make_simple(const CsgSolid& solid, std::uint32_t index) {
     const double z = (plane.d - dot(plane.normal, object_from_unit.translation)) / along;
     if (caps < 2 && std::isfinite(z)) rims.z[caps++] = z;
   }
-  if (caps < 2) return make_box(placed.bounds);
+  if (caps < 2) return make_box(solid.leaf(index).bounds);
   if (quadric.form == CsgQuadric::Form::cone) {
     rims.radius[0] = std::abs(rims.z[0]);
     rims.radius[1] = std::abs(rims.z[1]);
@@ -105,7 +105,7 @@ void add_tangents(const Simple& s, Vec3d apex, Vec3d v, std::vector<Vec3d>& norm
 
 }  // namespace
 
-bool is_separated(const Pyramid& beam, const CsgSolid& solid, std::uint32_t leaf) {
+bool is_separated(const Pyramid& beam, const BeamSolid& solid, std::uint32_t leaf) {
   const Simple s = make_simple(solid, leaf);
   Pyramid own;
   own.apex = transform_point(s.simple_from_object, beam.apex);

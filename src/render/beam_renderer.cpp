@@ -21,23 +21,10 @@ constexpr const char* kCoverageLo = "coverage_lo";
 constexpr const char* kCoverageHi = "coverage_hi";
 constexpr const char* kUncertified = "uncertified";
 
-struct UnsupportedName {
-  const char* operator()(const CsgTorus&) const { return "a torus"; }
-  const char* operator()(const CsgPrism&) const { return "an extrusion"; }
-  const char* operator()(const CsgRevolution&) const { return "a solid of revolution"; }
-  const char* operator()(const CsgMesh&) const { return "a polyhedron that is not convex"; }
-  const char* operator()(const CsgRounded&) const { return "a rounded polyhedron"; }
-  template <class Convex>
-  const char* operator()(const Convex&) const {
-    return nullptr;
-  }
-};
-
 // What all tiles share.
 struct Job {
-  const PreparedScene& scene;
+  const BeamScene& scene;
   const RenderOptions& options;
-  EyeRays eye;
   PathSettings settings;
   std::vector<Emitter> emitters;  // point-like
   bool needs_paths = false;       // there is other light
@@ -46,14 +33,6 @@ struct Job {
 EyeRays make_eye(const Scene& scene) {
   const CameraRays rays = make_camera_rays(*scene.camera, scene.image);
   return {Vec3d(rays.position), rays.corner, rays.step_x, rays.step_y};
-}
-
-std::vector<BeamSolid> make_solids(const SceneGeometry& geometry) {
-  std::vector<BeamSolid> solids;
-  for (const auto& object : geometry.csg.objects) {
-    solids.push_back({&object->cells->solid(), object->object_from_world});
-  }
-  return solids;
 }
 
 // In the order of `emitters`. None where translucent surfaces make shadows of more than two kinds.
@@ -97,13 +76,13 @@ std::uint32_t sample_count(const Job& job, double share) {
 Rgb shade_directly(const Job& job, const PixelSurface& surface, const KnownSight& sight,
                    PathRays& rays) {
   if (surface.samples.size() < 2) {
-    return direct_light(job.scene, job.emitters, sight, surface, rays);
+    return direct_light(job.scene.scene(), job.emitters, sight, surface, rays);
   }
   Rgb sum;
   double weight = 0;
   for (const AreaSample& sample : surface.samples) {
-    const KnownSight other = make_sight(job.scene, job.eye, surface, sample.at);
-    sum += direct_light(job.scene, job.emitters, other, surface, rays) * float(sample.weight);
+    const KnownSight other = make_sight(job.scene, surface, sample.at);
+    sum += direct_light(job.scene.scene(), job.emitters, other, surface, rays) * float(sample.weight);
     weight += sample.weight;
   }
   return sum * float(1 / weight);
@@ -111,7 +90,7 @@ Rgb shade_directly(const Job& job, const PixelSurface& surface, const KnownSight
 
 Rgb shade(const Job& job, const BeamPixel& pixel, const PixelSurface& surface,
           std::uint32_t& sample, PathRays& rays) {
-  const KnownSight sight = make_sight(job.scene, job.eye, surface, surface.sample);
+  const KnownSight sight = make_sight(job.scene, surface, surface.sample);
   const Rgb direct = shade_directly(job, surface, sight, rays);
   if (!job.needs_paths) return direct;
   Rgb other;
@@ -119,7 +98,7 @@ Rgb shade(const Job& job, const BeamPixel& pixel, const PixelSurface& surface,
   for (std::uint32_t i = 0; i < count; ++i) {
     const Sampler sampler(job.options.seed, std::uint32_t(pixel.x), std::uint32_t(pixel.y),
                           job.options.samples.first + sample++);
-    other += trace_known_sight(job.scene, job.settings, sight, sampler, rays).radiance;
+    other += trace_known_sight(job.scene.scene(), job.settings, sight, sampler, rays).radiance;
   }
   return direct + other * (1.0F / float(count));
 }
@@ -196,10 +175,10 @@ class BeamRenderer final : public Renderer {
                                     const RenderOptions& options) const override {
     const auto start = std::chrono::steady_clock::now();
     const ImageSettings& image = scene.scene().image;
-    Job job{scene, options, make_eye(scene.scene()), {.max_depth = image.max_depth}, {}, false};
+    const BeamScene beams(scene, make_eye(scene.scene()));
+    Job job{beams, options, {.max_depth = image.max_depth}, {}, false};
     job.emitters = point_like_emitters(scene.geometry().lights);
     job.needs_paths = needs_paths(scene.geometry(), job.settings, job.emitters.size());
-    const std::vector<BeamSolid> solids = make_solids(scene.geometry());
     Layers layers;
     layers.picture.color = Image(image.width_px, image.height_px, 3);
     for (const std::string& name : options.aovs) {
@@ -212,9 +191,10 @@ class BeamRenderer final : public Renderer {
     const auto render_with = [&](const auto& tracer) { return render_tiles(job, tracer, layers); };
     const std::vector<TileCounts> counts =
         rule_ == BeamRule::corners
-            ? render_with(CornerTracer(solids, job.eye, image.width_px, image.height_px, beam))
+            ? render_with(CornerTracer(beams.solids(), beams.eye(), image.width_px, image.height_px, beam))
             : render_with(
-                  BeamTracer(solids, job.eye, image.width_px, image.height_px, beam, lights));
+                  BeamTracer(beams.solids(), beams.eye(), image.width_px, image.height_px, beam,
+                             lights));
     const bool stopped = options.stop != nullptr && options.stop->load();
     RenderResult result;
     result.samples = options.samples;
@@ -250,21 +230,16 @@ std::unique_ptr<Renderer> make_beam_renderer(BeamRule rule) {
 }
 
 std::vector<std::string> beam_problems(const Scene& scene) {
-  constexpr const char* kRemedy = "; use --integrator path";
   std::vector<std::string> problems;
+  const RoundingSettings none;
   for (const Object& object : scene.objects) {
-    if (!object.csg) {
-      problems.push_back("object \"" + object.name +
-                         "\" is a mesh, and the beam renderer takes CSG solids only" + kRemedy);
-      continue;
-    }
-    for (const CsgLeaf& leaf : scene.csg_trees[object.csg->index].leaves) {
-      const char* name = std::visit(UnsupportedName{}, leaf.primitive);
-      if (name == nullptr) continue;
-      problems.push_back("object \"" + object.name + "\" has " + name +
-                         ", which the beam renderer can't bound" + kRemedy);
-      break;
-    }
+    if (object.csg) continue;  // never rounded
+    const RoundingSettings& rounding =
+        object.rounding ? *object.rounding : scene.rounding ? *scene.rounding : none;
+    if (rounding.method != RoundMethod::exact && rounding.method != RoundMethod::shader) continue;
+    problems.push_back("object \"" + object.name +
+                       "\" is to have rounded edges, and beams see meshes as they are; use --round none, "
+                       "--round-method mesh:3 or --integrator path");
   }
   return problems;
 }

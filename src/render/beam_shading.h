@@ -1,14 +1,13 @@
 // beam_shading.h — the light that a surface of a beam pixel sends to the camera
-// What       make_sight() finds the point of a given surface along a ray, whatever else is in the ray's way;
+// What       make_sight() finds the point of a given surface in the picture, whatever else is in the way;
 //            direct_light() adds up what point, spot and directional lights do there, by the same materials as the path
 //            tracer's. What other lights and further bounces do the path tracer finds from that point on.
-// Guarantee  the surface that a beam has found is shaded also where a ray through the same point of the picture
-//            would miss it by a rounding error
 #pragma once
 
 #include <cstdint>
 
 #include "beam/beam_tracer.h"
+#include "render/beam_scene.h"
 #include "render/path_integrator.h"
 
 namespace arris {
@@ -16,8 +15,7 @@ namespace arris {
 // The emitters without extent, in this order in the bits of PixelSurface::lit.
 std::vector<Emitter> point_like_emitters(const LightSet& lights);
 
-KnownSight make_sight(const PreparedScene& scene, const EyeRays& eye, const PixelSurface& surface,
-                      Vec2d at);
+KnownSight make_sight(const BeamScene& scene, const PixelSurface& surface, Vec2d at);
 
 Rgb direct_light(const PreparedScene& scene, const std::vector<Emitter>& emitters,
                  const KnownSight& sight, const PixelSurface& surface, PathRays& rays);

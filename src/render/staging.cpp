@@ -159,7 +159,7 @@ StagingReport stage_model(Scene& scene, const StageOptions& options) {
   if (!has_camera && options.camera.up) scene.up = *options.camera.up;
   apply_material(scene, options);
   apply_lighting(scene, options.lighting);
-  if (is_model && !scene.rounding) {
+  if (is_model && options.rounded && !scene.rounding) {
     RoundingSettings automatic;
     automatic.method = RoundMethod::exact;
     scene.rounding = automatic;

@@ -26,6 +26,7 @@ struct StageOptions {
   enum class Source { model, scene_file } source = Source::model;
   std::optional<Lighting> lighting;  // replaces the file's lights; empty: studio, if it has none
   std::optional<bool> ground;        // empty: for models without a camera of their own
+  bool rounded = true;               // models get the automatic radius
   std::optional<Material> material;  // replaces every material
   CameraOptions camera;
 };

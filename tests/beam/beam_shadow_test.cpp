@@ -66,11 +66,10 @@ TEST(beam_shadow, shares_of_lit_surface_hold_what_rays_find) {
         for (int k = 0; k < kGrid * kGrid; ++k) {
           const double x = pixel.x + (k % kGrid + 0.5) / kGrid;
           const double y = pixel.y + (k / kGrid + 0.5) / kGrid;
-          const TruthHit hit = see(scene, x, y);
-          if (!hit.seen || hit.seen->solid != 0) continue;
-          const Vec3d p =
-              scene.eye.position +
-              (scene.eye.corner + scene.eye.step_x * x + scene.eye.step_y * y) * hit.depth;
+          const std::optional<RaySight> hit = see(scene, x, y);
+          if (!hit || hit->seen.solid != 0) continue;
+          const Ray ray = ray_through(scene.eye, {x, y});
+          const Vec3d p = ray.origin + ray.direction * hit->depth;
           const Vec3d to = light.is_directional ? p - light.direction * 20.0 : light.position;
           if (!is_blocked(scene, p, to)) lit += 1.0 / (kGrid * kGrid);
         }

@@ -25,7 +25,7 @@ void check_pixel(const BeamScene& scene, const BeamPixel& pixel, int grid, Repor
   for (int j = 0; j < grid; ++j) {
     for (int i = 0; i < grid; ++i) {
       const double x = pixel.x + (i + 0.5) / grid, y = pixel.y + (j + 0.5) / grid;
-      truth[key_of(see(scene, x, y).seen)] += 1.0 / (grid * grid);
+      truth[key_at(scene, x, y)] += 1.0 / (grid * grid);
     }
   }
   std::map<SeenKey, const PixelSurface*> listed;
@@ -182,6 +182,36 @@ TEST(beam_tracer, bounds_hold_for_every_kind_of_leaf) {
     const Vec3d from = random_unit(random) * uniform(random, 2.5, 6);
     scene.eye = look_at(from, random_vector(random, 0.5), 35, scene.width, scene.height);
     expect_sound(scene, "tree " + std::to_string(i), 12);
+  }
+}
+
+// Open and closed, as coarse as a pixel and finer, with CSG solids among them.
+TEST(beam_tracer, bounds_hold_for_meshes) {
+  CsgRandom random(23);
+  for (int i = 0; i < 30; ++i) {
+    BeamScene scene;
+    scene.width = scene.height = 6;
+    std::vector<MeshTriangle> triangles;
+    const std::uint32_t count = 1 + std::uint32_t(random() % (i % 3 == 0 ? 100 : 6));
+    for (std::uint32_t k = 0; k < count; ++k) {
+      const Vec3d middle = random_vector(random, 1);
+      const double size = count > 6 ? 0.3 : 1.5;
+      triangles.push_back({{middle + random_vector(random, size),
+                            middle + random_vector(random, size),
+                            middle + random_vector(random, size)},
+                           k});
+    }
+    const CsgMesh closed = random_mesh(random);
+    for (const Triangle& t : closed.triangles) {
+      triangles.push_back(
+          {{closed.vertices[t[0]], closed.vertices[t[1]], closed.vertices[t[2]]}, 0});
+    }
+    const BeamMesh mesh(triangles);
+    if (i % 2 == 0) scene.add(random_convex_tree(random, 1));
+    scene.placed.push_back({nullptr, {}, &mesh});
+    const Vec3d from = random_unit(random) * uniform(random, 0.2, 6);
+    scene.eye = look_at(from, random_vector(random, 0.5), 35, scene.width, scene.height);
+    expect_sound(scene, "mesh " + std::to_string(i), 12);
   }
 }
 

@@ -8,6 +8,7 @@
 
 #include "beam/beam_tracer.h"
 #include "beam/convex_solid.h"
+#include "beam/ray_sight.h"
 #include "support/csg_oracle.h"
 
 namespace arris::test {
@@ -50,26 +51,17 @@ inline EyeRays look_at(Vec3d from, Vec3d to, double fov_deg, int width, int heig
   return eye;
 }
 
-// The first boundary along the ray through a picture point, of all solids; `second` is how far behind it the next is.
-struct TruthHit {
-  std::optional<SeenSurface> seen;
-  double depth = INFINITY;
-};
-inline TruthHit see(const BeamScene& scene, double x, double y) {
-  BoundarySearch search;
-  TruthHit hit;
-  const Vec3d direction = scene.eye.corner + scene.eye.step_x * x + scene.eye.step_y * y;
+// The first surface along the ray through a picture point.
+inline std::optional<RaySight> see(const BeamScene& scene, double x, double y) {
+  std::vector<BeamPart> roots;
   for (std::uint32_t i = 0; i < scene.placed.size(); ++i) {
-    const BeamSolid& s = scene.placed[i];
-    const Ray ray{transform_point(s.object_from_world, scene.eye.position),
-                  transform_vector(s.object_from_world, direction)};
-    for (const CsgBoundary& b : search.find(*s.solid, view_of(s.solid->root()), ray)) {
-      if (b.t <= 0) continue;
-      if (b.t < hit.depth) hit = {surface_of(i, *s.solid, b), b.t};
-      break;
-    }
+    roots.push_back({i, scene.placed[i].root()});
   }
-  return hit;
+  return see(scene.placed, roots, ray_through(scene.eye, {x, y}));
+}
+inline SeenKey key_at(const BeamScene& scene, double x, double y) {
+  const std::optional<RaySight> sight = see(scene, x, y);
+  return key_of(sight ? std::optional(sight->seen) : std::nullopt);
 }
 
 // Spheres, boxes, cylinders, cones, convex polyhedra, half-spaces.
