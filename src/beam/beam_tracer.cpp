@@ -4,7 +4,9 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <unordered_map>
 
+#include "base/hash.h"
 #include "base/parallel_for.h"
 #include "beam/ray_sight.h"
 
@@ -181,28 +183,55 @@ class BeamTracer::Tracer {
     return sight ? std::optional(sight->seen) : std::nullopt;
   }
 
-  static bool same(const PixelSurface& a, const PixelSurface& b) {
-    if (a.seen.has_value() != b.seen.has_value() || a.lit != b.lit || a.lit_known != b.lit_known) {
-      return false;
+  // Surfaces are the same by it; ~0 three times: nothing is seen.
+  using Key = std::array<std::uint32_t, 5>;
+  static Key key_of(const PixelSurface& s) {
+    constexpr std::uint32_t kNone = ~std::uint32_t{0};
+    if (!s.seen) return {kNone, kNone, kNone, s.lit, s.lit_known};
+    const std::uint32_t face = s.seen->face * 2 + (s.seen->entering ? 1 : 0);
+    return {s.seen->solid, s.seen->leaf, face, s.lit, s.lit_known};
+  }
+  struct KeyHash {
+    std::size_t operator()(const Key& key) const {
+      std::uint32_t hash = 0;
+      for (const std::uint32_t part : key) hash = hash_combine(hash, part);
+      return hash;
     }
-    return !a.seen || (a.seen->solid == b.seen->solid && a.seen->leaf == b.seen->leaf &&
-                       a.seen->face == b.seen->face && a.seen->entering == b.seen->entering);
+  };
+
+  // The entry of the surface; a new one has nothing in it.
+  PixelSurface& entry_of(const PixelSurface& surface) {
+    constexpr std::size_t kFewSurfaces = 16;  // of more, an index is faster
+    const Key key = key_of(surface);
+    if (surfaces_.size() <= kFewSurfaces) {
+      index_.clear();
+      for (PixelSurface& known : surfaces_) {
+        if (key_of(known) == key) return known;
+      }
+    } else {
+      if (index_.empty()) {
+        for (std::uint32_t i = 0; i < surfaces_.size(); ++i) index_[key_of(surfaces_[i])] = i;
+      }
+      const auto [at, is_new] = index_.try_emplace(key, std::uint32_t(surfaces_.size()));
+      if (!is_new) return surfaces_[at->second];
+    }
+    PixelSurface& added = surfaces_.emplace_back();
+    added.seen = surface.seen;
+    added.lit = surface.lit;
+    added.lit_known = surface.lit_known;
+    return added;
   }
 
   void add(const PixelSurface& surface) {
-    for (PixelSurface& known : surfaces_) {
-      if (!same(known, surface)) continue;
-      known.lo += surface.lo;
-      known.hi += surface.hi;
-      known.estimate += surface.estimate;
-      known.samples.insert(known.samples.end(), surface.samples.begin(), surface.samples.end());
-      if (surface.sample_weight > known.sample_weight) {
-        known.sample = surface.sample;
-        known.sample_weight = surface.sample_weight;
-      }
-      return;
+    PixelSurface& known = entry_of(surface);
+    known.lo += surface.lo;
+    known.hi += surface.hi;
+    known.estimate += surface.estimate;
+    known.samples.insert(known.samples.end(), surface.samples.begin(), surface.samples.end());
+    if (surface.sample_weight > known.sample_weight) {
+      known.sample = surface.sample;
+      known.sample_weight = surface.sample_weight;
     }
-    surfaces_.push_back(surface);
   }
 
   void finish_pixel(const Rect& pixel) {
@@ -232,6 +261,7 @@ class BeamTracer::Tracer {
   const std::function<void(const BeamPixel&)>& sink_;
   ShadowLists lists_;
   std::vector<PixelSurface> surfaces_;
+  std::unordered_map<Key, std::uint32_t, KeyHash> index_;  // of surfaces_, where they are many
   BeamStats stats_;
 };
 

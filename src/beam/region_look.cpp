@@ -87,6 +87,10 @@ class Looker {
     tree_.nodes.emplace_back();
     SignOracle oracle(rect_, assumptions_);
     if (!find_window(oracle)) return node;  // nothing
+    if (window_slots_.size() > options_.most_leaves) {
+      tree_.nodes[node] = give_up();
+      return node;
+    }
     const std::optional<LookNode> found = find_first(oracle);
     if (found) {
       tree_.nodes[node] = *found;
@@ -466,6 +470,10 @@ std::vector<BeamPart> prune_parts(const BeamView& view, const std::vector<BeamPa
 
 namespace {
 
+// Of so many leaves for each that is put in order it is asked whether they matter at the depths in question. Of more,
+// parts of the rectangle will see fewer.
+constexpr std::uint32_t kWindowLeaves = 8;
+
 // A part of one leaf, of which only the span counts.
 CsgExpression make_goal() {
   CsgTree tree;
@@ -480,7 +488,7 @@ LookTree look(const BeamView& view, const std::vector<BeamPart>& parts, const Re
               double depth_end, const LookOptions& options) {
   std::size_t leaves = 0;
   for (const BeamPart& part : parts) leaves += part.expression.leaves().size();
-  if (leaves <= options.most_leaves) {
+  if (leaves <= options.most_leaves * kWindowLeaves) {
     if (!options.only) return Looker(view, parts, rect, depth_end, options).run();
     static const CsgExpression kGoal = make_goal();
     std::vector<BeamPart> with_goal = parts;

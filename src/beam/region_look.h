@@ -62,8 +62,8 @@ struct LookOptions {
   // surface, which is no plane, so that its order does not matter. Precondition: every ray meets the plane.
   std::optional<LitPlane> only;
   std::uint32_t most_signs = 6;  // followed both ways, one below the other
-  std::uint32_t most_leaves =
-      16;  // more are not looked at: everything is unknown, without candidates
+  // That are put in order along the ray. Of more, all is unknown; of many more, without candidates.
+  std::uint32_t most_leaves = 16;
 };
 
 // The leaves that a beam may meet before depth_end: `parts` pruned, decided ones left out.
