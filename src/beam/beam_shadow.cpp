@@ -32,7 +32,7 @@ double depth_of(const PlaneForm& plane, const Rect& rect) {
 double diameter_of(std::span<const BeamSolid> solids) {
   Box3d all{Vec3d(kInfinity), Vec3d(-kInfinity)};
   for (const BeamSolid& s : solids) {
-    const Box3d& own = s.bounds();
+    const Box3d& own = s.shape->bounds();
     if (own.is_empty()) continue;
     const Affine3d world_from_object = inverse(s.object_from_world);
     all = hull(all, box_of(map_cell(world_from_object, make_cell(own))));
@@ -99,8 +99,9 @@ bool ShadowLooker::add_shadows(LookTree& tree, const Rect& rect, ShadowLists& li
   for (std::uint32_t i = 0; i < tree.nodes.size(); ++i) {
     const LookNode& node = tree.nodes[i];
     if (node.kind != LookNode::Kind::surface || !node.seen.surface.is_plane()) continue;
-    const BeamMesh* mesh = solids_[node.seen.solid].mesh;
-    if (mesh == nullptr || mesh->facets().size() <= kMostLitFacets) surfaces.push_back(i);
+    const BeamShape& shape = *solids_[node.seen.solid].shape;
+    const bool is_facet = shape.facet(node.seen.leaf) != nullptr;
+    if (!is_facet || shape.facet_count() <= kMostLitFacets) surfaces.push_back(i);
   }
   for (std::uint32_t light = 0; light < lights_.size(); ++light) {
     std::vector<std::uint32_t> ends;
@@ -144,12 +145,12 @@ const ShadowLists::List& ShadowLooker::list_for(LitPlane lit, std::uint32_t ligh
   const Sign light_side = side_of_light(lit, light);
   std::vector<BeamPart> roots;
   for (std::uint32_t i = 0; i < solids_.size(); ++i) {
-    const BeamSolid& solid = solids_[i];
-    CsgExpression root = solid.root();
+    const BeamShape& shape = *solids_[i].shape;
+    CsgExpression root = shape.root();
     if (i == lit.solid && !root.is_decided()) {
       std::vector<Cover> covers;
       for (const std::uint32_t leaf : root.leaves()) {
-        covers.push_back(is_behind(solid.convex(leaf), lit.plane, light_side) ? Cover::out
+        covers.push_back(is_behind(shape.convex(leaf), lit.plane, light_side) ? Cover::out
                                                                             : Cover::on);
       }
       root = root.prune(covers);
@@ -163,7 +164,7 @@ const ShadowLists::List& ShadowLooker::list_for(LitPlane lit, std::uint32_t ligh
 
 Sign ShadowLooker::side_of_light(LitPlane lit, std::uint32_t light) const {
   const BeamSolid& solid = solids_[lit.solid];
-  const CsgPlane& plane = solid.planes()[lit.plane];
+  const CsgPlane& plane = solid.shape->planes()[lit.plane];
   const LightPlace& place = lights_[light];
   if (!place.is_directional) {
     return side_of(plane, transform_point(solid.object_from_world, place.position));
@@ -174,7 +175,7 @@ Sign ShadowLooker::side_of_light(LitPlane lit, std::uint32_t light) const {
 std::optional<LookTree> ShadowLooker::look_from_light(LitPlane lit, std::uint32_t light,
                                                       const Rect& rect, ShadowLists& lists) const {
   const BeamSolid& solid = solids_[lit.solid];
-  const CsgPlane& plane = solid.planes()[lit.plane];
+  const CsgPlane& plane = solid.shape->planes()[lit.plane];
   const Sign eye_side = side_of(plane, transform_point(solid.object_from_world, eye_.position));
   if (eye_side * side_of_light(lit, light) != Sign::positive) return std::nullopt;
   const ShadowLists::List& list = list_for(lit, light, lists);

@@ -84,7 +84,7 @@ class BeamTracer::Tracer {
   [[nodiscard]] double least_region(const std::vector<BeamPart>& parts) const {
     const bool any_whole = std::ranges::any_of(parts, [&](const BeamPart& part) {
       return std::ranges::any_of(part.expression.leaves(), [&](std::uint32_t leaf) {
-        return shared_.solids_[part.solid].is_whole(leaf);
+        return shared_.solids_[part.solid].shape->is_whole(leaf);
       });
     });
     const BeamOptions& options = shared_.options_;
@@ -162,13 +162,13 @@ class BeamTracer::Tracer {
 
   void add_all_faces(const BeamPart& part, PixelSurface open) {
     for (const std::uint32_t leaf : part.expression.leaves()) {
-      const BeamSolid& solid = shared_.solids_[part.solid];
-      const ConvexLeaf* convex = solid.convex(leaf);
+      const BeamShape& shape = *shared_.solids_[part.solid].shape;
+      const ConvexLeaf* convex = shape.convex(leaf);
       const std::size_t faces =
           convex == nullptr ? 1 : convex->planes.size() + (convex->quadric ? 1 : 0);
       for (std::uint32_t face = 0; face < faces; ++face) {
         for (const bool entering : {true, false}) {
-          const std::uint32_t number = solid.is_whole(leaf) ? kAnyFace : face;
+          const std::uint32_t number = shape.is_whole(leaf) ? kAnyFace : face;
           open.seen = SeenSurface{part.solid, leaf, number, {}, entering};
           add(open);
         }
@@ -282,7 +282,7 @@ std::vector<BeamTile> BeamTracer::make_tiles() const {
   while (side < std::max(width_px_, height_px_)) side *= 2;
   whole.rect = {0, 0, side, side};
   for (std::uint32_t i = 0; i < solids_.size(); ++i) {
-    const CsgExpression& root = solids_[i].root();
+    const CsgExpression& root = solids_[i].shape->root();
     if (!root.is_decided()) whole.parts.push_back({i, root});
   }
   std::vector<BeamTile> level{std::move(whole)};

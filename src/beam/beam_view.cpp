@@ -81,7 +81,7 @@ QuadricForm make_form(const ViewFrame& frame, const CsgQuadric& quadric) {
 
 // Origin fixed: direction · ((a - o) × (b - o)). Direction fixed: the same for the point origin / weight, times weight:
 // weight d·(a × b) - origin · ((a - b) × d).
-Linear make_side(const ViewFrame& frame, const BeamMesh::Edge& edge) {
+Linear make_side(const ViewFrame& frame, const BeamShape::Edge& edge) {
   const Vec3i a = to_intervals(edge.a), b = to_intervals(edge.b);
   const auto dot_linear = [](const LinearVec& v, const Vec3i& n) {
     return v.x * n.x + v.y * n.y + v.z * n.z;
@@ -226,7 +226,7 @@ constexpr double kWindowMargin = 1e-7;
 LeafWindow BeamView::make_window(std::uint32_t solid, std::uint32_t leaf) const {
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   const LeafWindow everywhere{-kInfinity, -kInfinity, kInfinity, kInfinity};
-  const Box3d& box = this->solid(solid).leaf_box(leaf);
+  const Box3d& box = shape(solid).leaf_box(leaf);
   if (!is_finite(box.low) || !is_finite(box.high)) return everywhere;
   const Projection& map = projections_[solid];
   LeafWindow window{kInfinity, kInfinity, -kInfinity, -kInfinity, kInfinity, 0};
@@ -249,6 +249,31 @@ LeafWindow BeamView::make_window(std::uint32_t solid, std::uint32_t leaf) const 
     window.far = kInfinity;
   }
   return window;
+}
+
+bool BeamView::starts_in_volume(std::uint32_t solid, std::uint32_t leaf) const {
+  return apex_ && shape(solid).volume(leaf)->contains(
+                      transform_point(solids_[solid].object_from_world, *apex_));
+}
+
+// Of the corners' triple product as the origin sees them, which has the sign that all sides have where a ray meets it.
+int BeamView::facet_turn(std::uint32_t solid, const Facet& facet) const {
+  const std::vector<BeamShape::Edge>& edges = shape(solid).edges();
+  const auto corner = [&](std::size_t k) {
+    const BeamShape::Edge& e = edges[facet.edges[k]];
+    return to_intervals(facet.turned[k] ? e.b : e.a);
+  };
+  const Vec3i a = corner(0), b = corner(1), c = corner(2);
+  const ViewFrame& frame = frames_[solid];
+  Interval turn;
+  if (frame.direction_fixed) {
+    const LinearVec& d = frame.direction;
+    turn = dot(Vec3i{d.x.c, d.y.c, d.z.c}, cross(b - a, c - a));
+  } else {
+    const Vec3i o{frame.origin.x.c, frame.origin.y.c, frame.origin.z.c};
+    turn = dot(a - o, cross(b - o, c - o));
+  }
+  return turn.lo > 0 ? 1 : turn.hi < 0 ? -1 : 0;
 }
 
 SpaceCell BeamView::cell(std::uint32_t solid, const Rect& rect, Interval depths) const {
@@ -275,7 +300,7 @@ const PlaneForm& BeamView::remembered_plane(std::uint32_t solid, std::uint32_t i
   const std::uint64_t key = std::uint64_t(solid) << 32U | index;
   const auto known = asked_planes_.find(key);
   if (known != asked_planes_.end()) return known->second;
-  const CsgPlane& plane = this->solid(solid).planes()[index];
+  const CsgPlane& plane = shape(solid).planes()[index];
   return asked_planes_.emplace(key, make_form(frames_[solid], plane)).first->second;
 }
 
@@ -283,7 +308,7 @@ const Linear& BeamView::remembered_side(std::uint32_t solid, std::uint32_t edge)
   const std::uint64_t key = std::uint64_t(solid) << 32U | edge;
   const auto known = asked_sides_.find(key);
   if (known != asked_sides_.end()) return known->second;
-  const BeamMesh::Edge& ends = this->solid(solid).mesh->edges()[edge];
+  const BeamShape::Edge& ends = shape(solid).edges()[edge];
   return asked_sides_.emplace(key, make_side(frames_[solid], ends)).first->second;
 }
 
@@ -291,27 +316,26 @@ const QuadricForm& BeamView::remembered_quadric(std::uint32_t solid, std::uint32
   const std::uint64_t key = std::uint64_t(solid) << 32U | index;
   const auto known = asked_quadrics_.find(key);
   if (known != asked_quadrics_.end()) return known->second;
-  const CsgQuadric& quadric = this->solid(solid).quadric(index);
+  const CsgQuadric& quadric = shape(solid).quadrics()[index];
   return asked_quadrics_.emplace(key, make_form(frames_[solid], quadric)).first->second;
 }
 
 BeamView::BeamView(std::span<const BeamSolid> solids, const EyeRays& eye)
-    : solids_(solids), is_eye_(true) {
+    : solids_(solids), is_eye_(true), apex_(eye.position) {
   const Mat3d picture = make_picture_map(eye);
   for (const BeamSolid& solid : solids) {
     const ViewFrame frame = make_eye_frame(eye, solid);
     std::vector<PlaneForm>& planes = planes_.emplace_back();
-    for (const CsgPlane& plane : solid.planes()) {
+    for (const CsgPlane& plane : solid.shape->planes()) {
       planes.push_back(make_form(frame, plane));
     }
     std::vector<QuadricForm>& quadrics = quadrics_.emplace_back();
     std::vector<Linear>& sides = sides_.emplace_back();
-    if (solid.mesh != nullptr) {
-      for (const BeamMesh::Edge& edge : solid.mesh->edges()) sides.push_back(make_side(frame, edge));
-    } else {
-      for (const CsgQuadric& quadric : solid.solid->surfaces().quadrics()) {
-        quadrics.push_back(make_form(frame, quadric));
-      }
+    for (const BeamShape::Edge& edge : solid.shape->edges()) {
+      sides.push_back(make_side(frame, edge));
+    }
+    for (const CsgQuadric& quadric : solid.shape->quadrics()) {
+      quadrics.push_back(make_form(frame, quadric));
     }
     frames_.push_back(frame);
     const Affine3d world_from_object = inverse(solid.object_from_world);
@@ -320,8 +344,8 @@ BeamView::BeamView(std::span<const BeamSolid> solids, const EyeRays& eye)
   }
   std::vector<std::vector<LeafWindow>> windows;
   for (std::uint32_t i = 0; i < solids.size(); ++i) {
-    std::vector<LeafWindow>& of_solid = windows.emplace_back(this->solid(i).leaf_count());
-    for (const std::uint32_t leaf : this->solid(i).root().leaves()) {
+    std::vector<LeafWindow>& of_solid = windows.emplace_back(shape(i).leaf_count());
+    for (const std::uint32_t leaf : shape(i).root().leaves()) {
       of_solid[leaf] = make_window(i, leaf);
     }
   }
@@ -331,8 +355,9 @@ BeamView::BeamView(std::span<const BeamSolid> solids, const EyeRays& eye)
 BeamView::BeamView(std::span<const BeamSolid> solids, const EyeRays& eye, LitPlane lit,
                    const LightPlace& light, double reach)
     : solids_(solids) {
+  if (!light.is_directional) apex_ = light.position;
   const BeamSolid& of = solids[lit.solid];
-  const CsgPlane& lit_plane = of.planes()[lit.plane];
+  const CsgPlane& lit_plane = of.shape->planes()[lit.plane];
   const PlaneForm plane = make_form(make_eye_frame(eye, of), lit_plane);
   const LitPoints points = make_lit_points(plane);
   // The plane in the world: its normal goes with the transpose of the map into the solid's space.

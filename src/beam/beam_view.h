@@ -12,11 +12,12 @@
 
 #include <cstdint>
 #include <limits>
+#include <optional>
 #include <span>
 #include <unordered_map>
 #include <vector>
 
-#include "beam/beam_solid.h"
+#include "beam/beam_shape.h"
 #include "beam/polynomial.h"
 
 namespace arris {
@@ -56,7 +57,7 @@ struct QuadricForm {
 
 PlaneForm make_form(const ViewFrame& frame, const CsgPlane& plane);
 // On which side rays pass the line from a to b: positive where direction · ((a - origin) × (b - origin)) is.
-Linear make_side(const ViewFrame& frame, const BeamMesh::Edge& edge);
+Linear make_side(const ViewFrame& frame, const BeamShape::Edge& edge);
 QuadricForm make_form(const ViewFrame& frame, const CsgQuadric& quadric);
 
 ViewFrame make_eye_frame(const EyeRays& eye, const BeamSolid& solid);
@@ -101,7 +102,11 @@ class BeamView {
   BeamView(std::span<const BeamSolid> solids, const EyeRays& eye, LitPlane lit,
            const LightPlace& light, double reach);
 
-  [[nodiscard]] const BeamSolid& solid(std::uint32_t index) const { return solids_[index]; }
+  [[nodiscard]] const BeamShape& shape(std::uint32_t solid) const { return *solids_[solid].shape; }
+  // Is the origin of all rays inside the volume? A directional light is outside of all.
+  [[nodiscard]] bool starts_in_volume(std::uint32_t solid, std::uint32_t leaf) const;
+  // 1: the rays see the facet's corners turn counter-clockwise; -1: clockwise; 0: they run along it.
+  [[nodiscard]] int facet_turn(std::uint32_t solid, const Facet& facet) const;
   [[nodiscard]] std::size_t solid_count() const { return solids_.size(); }
   [[nodiscard]] bool direction_fixed() const { return frames_[0].direction_fixed; }
   // Of a leaf in the picture; rays outside miss it.
@@ -136,6 +141,7 @@ class BeamView {
 
   std::span<const BeamSolid> solids_;
   bool is_eye_ = false;
+  std::optional<Vec3d> apex_;  // in the world; nothing: parallel rays
   std::vector<ViewFrame> frames_;
   std::vector<Projection> projections_;  // by solid, from its own space
   std::vector<std::vector<LeafWindow>> windows_;

@@ -96,15 +96,16 @@ class CornerTracer::Tracer {
   std::vector<BareCrossing> cross_all(const std::vector<BeamPart>& parts, Vec2d at) {
     std::vector<BareCrossing> all;
     for (const BeamPart& part : parts) {
-      const BeamSolid& solid = shared_.solids_[part.solid];
+      const BeamShape& shape = *shared_.solids_[part.solid].shape;
       const Ray ray = ray_at(part.solid, at);
       for (const std::uint32_t leaf : part.expression.leaves()) {
-        if (solid.mesh != nullptr) {
-          if (const auto t = solid.mesh->meet(leaf, ray)) all.push_back({*t, part.solid, leaf, 0});
+        if (const Facet* facet = shape.facet(leaf)) {
+          if (const auto t = shape.meet(*facet, ray)) all.push_back({*t, part.solid, leaf, 0});
           continue;
         }
+        if (shape.volume(leaf) != nullptr) continue;
         for (const Crossing& c :
-             crossings_.find(solid.solid->leaf(leaf), solid.solid->surfaces(), ray)) {
+             crossings_.find(shape.csg().leaf(leaf), shape.csg().surfaces(), ray)) {
           if (c.t > 0 && c.t < kInfinity) all.push_back({c.t, part.solid, leaf, c.face});
         }
       }
@@ -130,6 +131,7 @@ class CornerTracer::Tracer {
     }
     for (const BeamPart& part : parts) {
       for (const std::uint32_t leaf : part.expression.leaves()) {
+        if (shared_.solids_[part.solid].shape->volume(leaf) != nullptr) continue;
         if (std::ranges::none_of(bare, [&](const BareCrossing& c) {
               return c.solid == part.solid && c.leaf == leaf;
             })) {
@@ -197,7 +199,7 @@ std::vector<BeamPart> CornerTracer::parts_in(const std::vector<BeamPart>& parts,
     }
     std::vector<Cover> covers;
     for (const std::uint32_t leaf : part.expression.leaves()) {
-      covers.push_back(is_separated(beam, solids_[part.solid], leaf) ? Cover::out
+      covers.push_back(is_separated(beam, *solids_[part.solid].shape, leaf) ? Cover::out
                                                                             : Cover::on);
     }
     BeamPart pruned{part.solid, part.expression.prune(covers)};
@@ -214,7 +216,7 @@ std::vector<BeamTile> CornerTracer::make_tiles() const {
   }
   std::vector<BeamPart> roots;
   for (std::uint32_t i = 0; i < solids_.size(); ++i) {
-    const CsgExpression& root = solids_[i].root();
+    const CsgExpression& root = solids_[i].shape->root();
     if (!root.is_decided()) roots.push_back({i, root});
   }
   parallel_for(tiles.size(), {.threads = options_.threads},

@@ -35,10 +35,11 @@ class SpanMaker {
       : view_(view), place_(place), depth_end_(depth_end), oracle_(oracle) {}
 
   std::optional<LeafSpan> make() {
-    const BeamSolid& solid = view_.solid(place_.solid);
-    if (solid.mesh != nullptr) return make_facet(*solid.mesh);
-    if (solid.is_whole(place_.leaf)) return make_whole();
-    const ConvexLeaf& leaf = *solid.convex(place_.leaf);
+    const BeamShape& shape = view_.shape(place_.solid);
+    if (const Facet* facet = shape.facet(place_.leaf)) return make_facet(*facet);
+    if (shape.volume(place_.leaf) != nullptr) return make_volume();
+    if (shape.is_whole(place_.leaf)) return make_whole();
+    const ConvexLeaf& leaf = *shape.convex(place_.leaf);
     span_.starts_inside = true;
     for (std::uint32_t i = 0; i < leaf.planes.size(); ++i) {
       if (!add_plane(leaf.planes[i], i)) return std::nullopt;
@@ -50,17 +51,10 @@ class SpanMaker {
   }
 
  private:
-  // A ray ahead of which the plane lies meets the facet if it passes all edges on the side that the slope tells.
-  std::optional<LeafSpan> make_facet(const BeamMesh& mesh) {
-    const BeamSurface surface{place_.solid, place_.leaf, Root::none};
-    const PlaneForm& form = view_.plane(place_.solid, place_.leaf);
-    const Sign height = oracle_.find(key_of(Of::height, surface), form.height);
-    const Sign slope = oracle_.find(key_of(Of::slope, surface), form.slope);
-    // From an eye in its plane a facet is a line.
-    const Sign wanted = view_.direction_fixed() ? slope : -height;
-    if (wanted == Sign::unknown) return std::nullopt;
-    if (height * slope == Sign::positive) return std::nullopt;
-    const Facet& facet = mesh.facets()[place_.leaf];
+  // Met by rays that pass all edges on the side that the corners' turn tells; entered for good.
+  std::optional<LeafSpan> make_facet(const Facet& facet) {
+    const Sign wanted = Sign(view_.facet_turn(place_.solid, facet));
+    if (wanted == Sign::unknown) return std::nullopt;  // it is seen as a line
     bool within = true;
     for (std::size_t k = 0; k < 3; ++k) {
       const BeamSurface edge{place_.solid, facet.edges[k], Root::none};
@@ -69,16 +63,20 @@ class SpanMaker {
       if (own == -wanted) return std::nullopt;
       within = within && own == wanted;
     }
-    Interval slopes = range_over(form.slope, oracle_.rect());
-    if (wanted == Sign::negative) slopes = -slopes;
-    if (slopes.hi <= 0) return std::nullopt;
-    const Interval distance = absolute(range_over(form.height, oracle_.rect()));
-    span_.enter = quotient(distance, {std::max(slopes.lo, 0.0), slopes.hi});
+    const PlaneForm& form = view_.plane(place_.solid, facet.plane.plane);
+    span_.enter = quotient(absolute(range_over(form.height, oracle_.rect())),
+                           absolute(range_over(form.slope, oracle_.rect())));
     if (!(span_.enter.lo <= depth_end_)) return std::nullopt;
     span_.leave = {kInfinity, kInfinity};
-    span_.entering.push_back({span_.enter, surface, 0});
+    span_.entering.push_back({span_.enter, {place_.solid, facet.plane.plane, Root::none}, 0});
     span_.facet_positive = wanted == Sign::positive;
     span_.certain = within && span_.enter.hi < kInfinity;
+    return std::move(span_);
+  }
+  std::optional<LeafSpan> make_volume() {
+    if (!view_.starts_in_volume(place_.solid, place_.leaf)) return std::nullopt;
+    span_.starts_inside = span_.certain = true;
+    span_.leave = {kInfinity, kInfinity};
     return std::move(span_);
   }
 
@@ -100,7 +98,7 @@ class SpanMaker {
   };
   [[nodiscard]] Slices slice(Interval range) const {
     constexpr int kSlices = 16;
-    const CsgSolid& solid = *view_.solid(place_.solid).solid;
+    const CsgSolid& solid = view_.shape(place_.solid).csg();
     const auto depth = [&](int i) { return range.lo + (range.hi - range.lo) * (double(i) / kSlices); };
     Slices found;
     for (int i = 0; i < kSlices; ++i) {
@@ -168,13 +166,13 @@ class SpanMaker {
 
   // The half of a double cone that the leaf is in: the sign of z in the cone's own frame.
   [[nodiscard]] Sign half_of(const CsgQuadric& quadric) const {
-    const Box3d& box = view_.solid(place_.solid).leaf_box(place_.leaf);
+    const Box3d& box = view_.shape(place_.solid).leaf_box(place_.leaf);
     const Vec3d middle = transform_point(quadric.unit_from_object, (box.low + box.high) * 0.5);
     return middle.z > 0 ? Sign::positive : Sign::negative;
   }
 
   bool add_quadric(std::uint32_t index, std::uint32_t face) {
-    const CsgQuadric& quadric = view_.solid(place_.solid).quadric(index);
+    const CsgQuadric& quadric = view_.shape(place_.solid).quadrics()[index];
     const QuadricForm& form = view_.quadric(place_.solid, index);
     BeamSurface surface{place_.solid, index, Root::nearer};
     span_.quadric = surface;
@@ -363,7 +361,7 @@ Order order_to_middle(const BeamView& view, const SpanEnd& plane, const SpanEnd&
 Order order_of_plane_and_root(const BeamView& view, const SpanEnd& plane, const SpanEnd& root,
                               SignOracle& oracle) {
   const CsgQuadric& quadric =
-      view.solid(root.surface.solid).quadric(root.surface.index);
+      view.shape(root.surface.solid).quadrics()[root.surface.index];
   const QuadricForm& q = view.quadric(root.surface.solid, root.surface.index);
   const PlaneForm& p = view.plane(plane.surface.solid, plane.surface.index);
   const SignKey key{Of::plane_quadric, plane.surface.solid, plane.surface.index, root.surface.solid,
@@ -413,7 +411,7 @@ Met decide_end_met(const BeamView& view, const SpanEnd& end, SignOracle& oracle)
   if (end.surface.is_whole()) return Met::unknown;
   if (end.surface.is_plane()) return plane_met(view, end, oracle);
   const CsgQuadric& quadric =
-      view.solid(end.surface.solid).quadric(end.surface.index);
+      view.shape(end.surface.solid).quadrics()[end.surface.index];
   const bool may_open = quadric.form == CsgQuadric::Form::cone &&
                         (end.surface.root == Root::farther || end.surface.root == Root::leaving);
   if (!may_open) return Met::yes;
@@ -469,7 +467,7 @@ namespace {
 Met quadric_met(const BeamView& view, const BeamSurface& s, SignOracle& oracle) {
   const QuadricForm& q = view.quadric(s.solid, s.index);
   const bool is_cone =
-      view.solid(s.solid).quadric(s.index).form == CsgQuadric::Form::cone;
+      view.shape(s.solid).quadrics()[s.index].form == CsgQuadric::Form::cone;
   const auto met = [](Sign sign, Sign wanted) {
     return sign == Sign::unknown ? Met::unknown : sign == wanted ? Met::yes : Met::no;
   };
@@ -499,7 +497,7 @@ Met quadric_met(const BeamView& view, const BeamSurface& s, SignOracle& oracle) 
 namespace {
 
 Met facet_met(const BeamView& view, const LeafSpan& span, LeafPlace place, SignOracle& oracle) {
-  const Facet& facet = view.solid(place.solid).mesh->facets()[place.leaf];
+  const Facet& facet = *view.shape(place.solid).facet(place.leaf);
   const Sign wanted = *span.facet_positive ? Sign::positive : Sign::negative;
   for (std::size_t k = 0; k < 3; ++k) {
     const BeamSurface edge{place.solid, facet.edges[k], Root::none};
@@ -518,7 +516,7 @@ Met decide_met(const BeamView& view, const LeafSpan& span, LeafPlace place, Sign
   if (span.entering.size() == 1 && span.entering[0].surface.is_whole()) return Met::unknown;
   if (span.start_open) {
     // make_span() found a sign open that it could not ask for.
-    const ConvexLeaf& leaf = *view.solid(place.solid).convex(place.leaf);
+    const ConvexLeaf& leaf = *view.shape(place.solid).convex(place.leaf);
     for (const PlaneRef& ref : leaf.planes) {
       const BeamSurface s{place.solid, ref.plane, Root::none};
       if (oracle.ask(key_of(Of::height, s), view.plane(s.solid, s.index).height) == Sign::unknown)

@@ -4,7 +4,7 @@
 //            keeps the surfaces that may make it. What the bounds leave open, SignOracle asks as signs of polynomials.
 //            Of any other leaf it is known where slices of the beam are certainly outside or inside, no more: its
 //            surface is one, whatever face of it a ray meets, and its order before others only where bounds are apart.
-//            A facet of a mesh (beam_mesh.h) is entered at its plane, for good.
+//            A facet of a mesh (beam_shape.h) is entered at its plane, for good.
 // Guarantee  along every ray through the rectangle for which the oracle's assumptions hold, the leaf is entered and
 //            left within the bounds or missed; nothing is missed if `certain` (tests/beam/region_look_test.cpp)
 #pragma once

@@ -4,6 +4,7 @@
 #include <iterator>
 #include <optional>
 #include <ranges>
+#include <span>
 
 namespace arris {
 namespace {
@@ -36,6 +37,24 @@ Cover cover_over(const SpanSlot& s, Interval depths) {
   return span.certain && entered && depths.hi < span.leave.lo ? Cover::in : Cover::on;
 }
 
+Cover join_covers(CsgStep::Kind kind, std::span<const Cover> operands) {
+  Cover value = kind == CsgStep::Kind::intersect || kind == CsgStep::Kind::even ? Cover::in : Cover::out;
+  for (const Cover cover : operands) {
+    switch (kind) {
+      case CsgStep::Kind::unite:
+        value = value | cover;
+        break;
+      case CsgStep::Kind::intersect:
+        value = value & cover;
+        break;
+      default:  // parities
+        if (cover == Cover::on) return Cover::on;
+        if (cover == Cover::in) value = !value;
+    }
+  }
+  return value;
+}
+
 template <class CoverOf>
 Cover eval_covers(const CsgExpression& expression, const CoverOf& cover_of) {
   if (expression.is_decided()) return expression.value();
@@ -47,12 +66,9 @@ Cover eval_covers(const CsgExpression& expression, const CoverOf& cover_of) {
       stack.push_back(step.kind == CsgStep::Kind::leaf ? cover : !cover);
       continue;
     }
-    const bool is_union = step.kind == CsgStep::Kind::unite;
-    Cover value = is_union ? Cover::out : Cover::in;
-    for (std::uint32_t i = 0; i < step.value; ++i) {
-      value = is_union ? value | stack.back() : value & stack.back();
-      stack.pop_back();
-    }
+    const std::size_t first = stack.size() - step.value;
+    const Cover value = join_covers(step.kind, std::span(stack).subspan(first));
+    stack.resize(first);
     stack.push_back(value);
   }
   return stack.back();
@@ -188,14 +204,13 @@ class Looker {
   // Does the assumption change what is known of the leaf's span?
   [[nodiscard]] bool concerns(const Assumption& assumption, const LeafPlace& place) const {
     if (assumption.key.solid_a != place.solid) return false;
-    const BeamSolid& solid = view_.solid(place.solid);
-    if (solid.is_whole(place.leaf)) return false;
-    if (solid.mesh != nullptr) {
-      if (is_of_plane(assumption)) return assumption.key.index_a == place.leaf;
-      const auto& edges = solid.mesh->facets()[place.leaf].edges;
-      return std::ranges::find(edges, assumption.key.index_a) != edges.end();
+    const BeamShape& shape = view_.shape(place.solid);
+    if (const Facet* facet = shape.facet(place.leaf)) {
+      return assumption.key.of == SignKey::Of::side &&
+             std::ranges::find(facet->edges, assumption.key.index_a) != facet->edges.end();
     }
-    const ConvexLeaf& leaf = *solid.convex(place.leaf);
+    if (shape.convex(place.leaf) == nullptr || assumption.key.of == SignKey::Of::side) return false;
+    const ConvexLeaf& leaf = *shape.convex(place.leaf);
     if (is_of_plane(assumption)) {
       return std::ranges::any_of(leaf.planes,
                                  [&](PlaneRef ref) { return ref.plane == assumption.key.index_a; });
@@ -456,7 +471,8 @@ std::vector<BeamPart> prune_parts(const BeamView& view, const std::vector<BeamPa
           is_near ? make_span(view, {part.solid, leaf}, depth_end, oracle) : std::nullopt;
       Cover cover = Cover::on;
       if (!span) cover = Cover::out;
-      if (span && span->starts_inside && span->certain && span->leave.lo > depth_end) {
+      if (span && span->starts_inside && span->certain &&
+          (span->leave.lo > depth_end || span->leave.lo == kInfinity)) {
         cover = Cover::in;
       }
       any = any || cover != Cover::on;

@@ -47,10 +47,10 @@ Simple make_box(const Box3d& b) {
   return {{}, corners};
 }
 
-Simple make_simple(const BeamSolid& beam_solid, std::uint32_t index) {
-  const ConvexLeaf* convex = beam_solid.convex(index);
-  if (convex == nullptr || !convex->quadric) return make_box(beam_solid.leaf_box(index));
-  const CsgSolid& solid = *beam_solid.solid;
+Simple make_simple(const BeamShape& shape, std::uint32_t index) {
+  const ConvexLeaf* convex = shape.convex(index);
+  if (convex == nullptr || !convex->quadric) return make_box(shape.leaf_box(index));
+  const CsgSolid& solid = shape.csg();
   const ConvexLeaf& leaf = *convex;
   const CsgQuadric& quadric = solid.surfaces().quadrics()[*leaf.quadric];
   if (quadric.form == CsgQuadric::Form::ellipsoid) return {quadric.unit_from_object, Ball{}};
@@ -105,8 +105,9 @@ void add_tangents(const Simple& s, Vec3d apex, Vec3d v, std::vector<Vec3d>& norm
 
 }  // namespace
 
-bool is_separated(const Pyramid& beam, const BeamSolid& solid, std::uint32_t leaf) {
-  const Simple s = make_simple(solid, leaf);
+bool is_separated(const Pyramid& beam, const BeamShape& shape, std::uint32_t leaf) {
+  if (shape.volume(leaf) != nullptr) return false;
+  const Simple s = make_simple(shape, leaf);
   Pyramid own;
   own.apex = transform_point(s.simple_from_object, beam.apex);
   for (std::size_t i = 0; i < 4; ++i) {

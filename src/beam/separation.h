@@ -10,7 +10,7 @@
 #include <array>
 #include <cstdint>
 
-#include "beam/beam_solid.h"
+#include "beam/beam_shape.h"
 
 namespace arris {
 
@@ -21,6 +21,6 @@ struct Pyramid {
 };
 
 // Precondition: the leaf is a ConvexLeaf.
-bool is_separated(const Pyramid& beam, const BeamSolid& solid, std::uint32_t leaf);
+bool is_separated(const Pyramid& beam, const BeamShape& shape, std::uint32_t leaf);
 
 }  // namespace arris

@@ -15,6 +15,10 @@ using Kind = CsgStep::Kind;
   throw Error(Error::Kind::input, "CSG solid \"" + tree.name + "\"", what);
 }
 
+bool is_of_leaf(const CsgStep& step) {
+  return step.kind == Kind::leaf || step.kind == Kind::complement;
+}
+
 // A node on the way down.
 struct Visit {
   std::uint32_t node = 0;
@@ -110,12 +114,31 @@ struct Operand {
   std::size_t first = 0;
 };
 
+// Of the operands from `base` on. Those that are known are nowhere in the steps; returns the value.
+Cover join_parity(CsgStep::Kind kind, std::span<const Operand> operands, std::vector<CsgStep>& out) {
+  bool odd = kind == Kind::odd;
+  std::uint32_t left = 0;
+  for (const Operand& operand : operands) {
+    odd ^= operand.value == Cover::in;
+    left += operand.value == Cover::on ? 1 : 0;
+  }
+  if (left == 0) return odd ? Cover::out : Cover::in;
+  if (left > 1) {
+    out.push_back({odd ? Kind::odd : Kind::even, left});
+  } else if (!odd) {
+    // One operand, turned round: operands of parities are leaves.
+    CsgStep& only = out.back();
+    only.kind = only.kind == Kind::leaf ? Kind::complement : Kind::leaf;
+  }
+  return Cover::on;
+}
+
 // Puts in what is known; returns the value, and leaves the steps of what is not.
 template <class CoverOf>
 Cover simplify(std::span<const CsgStep> steps, const CoverOf& cover_of, std::vector<CsgStep>& out) {
   std::vector<Operand> stack;
   for (const CsgStep& step : steps) {
-    if (step.kind == Kind::leaf || step.kind == Kind::complement) {
+    if (is_of_leaf(step)) {
       const Cover cover = step.kind == Kind::leaf ? cover_of(step.value) : !cover_of(step.value);
       stack.push_back({cover, out.size()});
       if (cover == Cover::on) out.push_back(step);
@@ -124,6 +147,12 @@ Cover simplify(std::span<const CsgStep> steps, const CoverOf& cover_of, std::vec
     const std::size_t base = stack.size() - step.value;
     const bool is_union = step.kind == Kind::unite;
     const std::size_t first = step.value > 0 ? stack[base].first : out.size();
+    if (step.kind == Kind::odd || step.kind == Kind::even) {
+      const Cover parity = join_parity(step.kind, std::span(stack).subspan(base), out);
+      stack.resize(base);
+      stack.push_back({parity, first});
+      continue;
+    }
     Cover value = is_union ? Cover::out : Cover::in;
     std::uint32_t left = 0;
     for (std::size_t i = base; i < stack.size(); ++i) {
@@ -147,15 +176,42 @@ CsgExpression::CsgExpression(const CsgTree& tree, const std::vector<bool>& exist
   const std::vector<CsgStep> flat = Flattener(tree, exists).flatten();
   decided_ = simplify(
       flat, [](std::uint32_t) { return Cover::on; }, steps_);
+  number_leaves();
+}
+
+// Steps name leaves of the tree, and then indices of leaves().
+void CsgExpression::number_leaves() {
   for (const CsgStep& step : steps_) {
-    if (step.kind == Kind::leaf || step.kind == Kind::complement) leaves_.push_back(step.value);
+    if (is_of_leaf(step)) leaves_.push_back(step.value);
   }
   std::ranges::sort(leaves_);
   leaves_.erase(std::unique(leaves_.begin(), leaves_.end()), leaves_.end());
   for (CsgStep& step : steps_) {
-    if (step.kind != Kind::leaf && step.kind != Kind::complement) continue;
+    if (!is_of_leaf(step)) continue;
     step.value = std::uint32_t(std::ranges::lower_bound(leaves_, step.value) - leaves_.begin());
   }
+}
+
+CsgExpression CsgExpression::with_parities(
+    const std::map<std::uint32_t, std::vector<std::uint32_t>>& volumes) const {
+  CsgExpression replaced;
+  replaced.decided_ = decided_;
+  for (CsgStep step : steps_) {
+    if (is_of_leaf(step)) {
+      step.value = leaves_[step.value];
+      const auto volume = volumes.find(step.value);
+      if (volume != volumes.end()) {
+        for (const std::uint32_t leaf : volume->second) {
+          replaced.steps_.push_back({Kind::leaf, leaf});
+        }
+        step = {step.kind == Kind::leaf ? Kind::odd : Kind::even,
+                std::uint32_t(volume->second.size())};
+      }
+    }
+    replaced.steps_.push_back(step);
+  }
+  replaced.number_leaves();
+  return replaced;
 }
 
 CsgExpression CsgExpression::prune(std::span<const Cover> covers) const {
@@ -167,7 +223,7 @@ CsgExpression CsgExpression::prune(std::span<const Cover> covers) const {
   constexpr std::uint32_t kUnused = ~std::uint32_t{0};
   std::vector<std::uint32_t> renamed(leaves_.size(), kUnused);
   for (const CsgStep& step : pruned.steps_) {
-    if (step.kind == Kind::leaf || step.kind == Kind::complement) renamed[step.value] = 0;
+    if (is_of_leaf(step)) renamed[step.value] = 0;
   }
   for (std::size_t i = 0; i < leaves_.size(); ++i) {
     if (renamed[i] == kUnused) continue;
@@ -175,7 +231,7 @@ CsgExpression CsgExpression::prune(std::span<const Cover> covers) const {
     pruned.leaves_.push_back(leaves_[i]);
   }
   for (CsgStep& step : pruned.steps_) {
-    if (step.kind == Kind::leaf || step.kind == Kind::complement) step.value = renamed[step.value];
+    if (is_of_leaf(step)) step.value = renamed[step.value];
   }
   return pruned;
 }
@@ -186,14 +242,16 @@ Box3d CsgExpression::bounds(std::span<const Box3d> boxes) const {
   if (is_decided()) return decided_ == Cover::in ? all : none;
   std::vector<Box3d> stack;
   for (const CsgStep& step : steps_) {
-    if (step.kind == Kind::leaf || step.kind == Kind::complement) {
+    if (is_of_leaf(step)) {
       stack.push_back(step.kind == Kind::leaf ? boxes[step.value] : all);
       continue;
     }
     const std::size_t base = stack.size() - step.value;
-    Box3d box = step.kind == Kind::unite ? none : all;
+    const bool grows = step.kind == Kind::unite || step.kind == Kind::odd;
+    Box3d box = grows ? none : all;
     for (std::size_t i = base; i < stack.size(); ++i) {
-      box = step.kind == Kind::unite ? hull(box, stack[i]) : intersection(box, stack[i]);
+      if (step.kind == Kind::even) break;
+      box = grows ? hull(box, stack[i]) : intersection(box, stack[i]);
     }
     // Infinities of an empty box would grow a later union.
     if (box.is_empty()) box = none;
@@ -206,7 +264,7 @@ Box3d CsgExpression::bounds(std::span<const Box3d> boxes) const {
 std::uint32_t CsgExpression::depth() const {
   std::vector<std::uint32_t> stack;
   for (const CsgStep& step : steps_) {
-    if (step.kind == Kind::leaf || step.kind == Kind::complement) {
+    if (is_of_leaf(step)) {
       stack.push_back(0);
       continue;
     }

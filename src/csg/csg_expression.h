@@ -1,12 +1,14 @@
 // csg_expression.h — which points belong to a solid, as a formula over its leaves
 // What       unions and intersections of leaves and of their complements, in postfix: differences are intersections
-//            with complements, which are pushed down to the leaves. prune() puts in what is known of some leaves.
+//            with complements, which are pushed down to the leaves. Parities are for volumes that are described by what
+//            bounds them. prune() puts in what is known of some leaves.
 // Guarantee  no recursion: chains of any depth. prune() keeps the formula's value for every state of the leaves left;
 //            leaves on which the value no longer depends by a decided neighbour are gone.
 // Cost       all linear in the steps
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <span>
 #include <vector>
@@ -17,7 +19,8 @@
 namespace arris {
 
 struct CsgStep {
-  enum class Kind : std::uint32_t { leaf, complement, unite, intersect };
+  // odd and even: of how many of the operands hold
+  enum class Kind : std::uint32_t { leaf, complement, unite, intersect, odd, even };
   Kind kind = Kind::leaf;
   std::uint32_t value =
       0;  // leaf and complement: which, an index of leaves(); others: how many operands
@@ -41,6 +44,10 @@ class CsgExpression {
   [[nodiscard]] const std::vector<CsgStep>& steps() const { return steps_; }
   [[nodiscard]] std::uint32_t depth() const;  // of operations in one another
 
+  // With each leaf that is among `volumes` replaced by the parity of others: inside are points in an odd number of
+  // them.
+  [[nodiscard]] CsgExpression with_parities(
+      const std::map<std::uint32_t, std::vector<std::uint32_t>>& volumes) const;
   // `covers` by index of leaves().
   [[nodiscard]] CsgExpression prune(std::span<const Cover> covers) const;
   // `boxes` by index of leaves(). Contains the solid; infinite where a complement alone bounds it.
@@ -55,6 +62,8 @@ class CsgExpression {
   static bool eval_steps(std::span<const CsgStep> steps, const IsIn& is_in);
 
  private:
+  void number_leaves();
+
   std::vector<std::uint32_t> leaves_;
   std::vector<CsgStep> steps_;
   Cover decided_ = Cover::out;
@@ -72,13 +81,26 @@ bool CsgExpression::eval_steps(std::span<const CsgStep> steps, const IsIn& is_in
       continue;
     }
     const std::size_t first = stack.size() - step.value;
-    std::uint8_t all = 1, any = 0;
+    std::uint8_t all = 1, any = 0, odd = 0;
     for (std::size_t i = first; i < stack.size(); ++i) {
       all = std::uint8_t(all & stack[i]);
       any = std::uint8_t(any | stack[i]);
+      odd = std::uint8_t(odd ^ stack[i]);
     }
     stack.resize(first);
-    stack.push_back(step.kind == CsgStep::Kind::unite ? any : all);
+    switch (step.kind) {
+      case CsgStep::Kind::unite:
+        stack.push_back(any);
+        break;
+      case CsgStep::Kind::odd:
+        stack.push_back(odd);
+        break;
+      case CsgStep::Kind::even:
+        stack.push_back(odd ^ 1U);
+        break;
+      default:
+        stack.push_back(all);
+    }
   }
   return stack.back() != 0;
 }

@@ -1,8 +1,8 @@
 #include "render/beam_scene.h"
 
+#include <algorithm>
 #include <cmath>
 
-#include "beam/convex_solid.h"
 #include "csg/csg_cells.h"
 #include "csg/leaf_crossings.h"
 #include "render/embree_hit.h"
@@ -69,13 +69,11 @@ BeamScene::BeamScene(const PreparedScene& scene, const EyeRays& eye) : scene_(sc
 
 void BeamScene::add_csg() {
   const Scene& described = scene_.scene();
-  csg_.resize(described.csg_trees.size());
+  trees_.resize(described.csg_trees.size());
   for (const auto& object : scene_.geometry().csg.objects) {
     const std::uint32_t tree = described.objects[object->object.index].csg->index;
-    if (!csg_[tree]) {
-      csg_[tree] = std::make_unique<CsgSolid>(make_convex_solid(described.csg_trees[tree]));
-    }
-    solids_.push_back({csg_[tree].get(), object->object_from_world});
+    if (!trees_[tree]) trees_[tree] = std::make_unique<BeamShape>(described.csg_trees[tree]);
+    solids_.push_back({trees_[tree].get(), object->object_from_world});
     objects_.push_back(object.get());
     records_.push_back(object->record);
   }
@@ -92,9 +90,9 @@ void BeamScene::add_meshes() {
       const WorldTriangle w = world_triangle(scene_.scene(), record, t);
       triangles.push_back({{Vec3d(w.p0), Vec3d(w.p1), Vec3d(w.p2)}, t});
     }
-    meshes_.push_back(std::make_unique<BeamMesh>(triangles));
-    if (meshes_.back()->facets().empty()) continue;
-    solids_.push_back({nullptr, {}, meshes_.back().get()});
+    meshes_.push_back(std::make_unique<BeamShape>(triangles));
+    if (meshes_.back()->facet_count() == 0) continue;
+    solids_.push_back({meshes_.back().get(), {}});
     objects_.push_back(nullptr);
     records_.push_back(r);
   }
@@ -106,7 +104,7 @@ SurfaceHit BeamScene::hit_at(const SeenSurface& seen, const Ray& world) const {
 
 bool BeamScene::is_curved(const SeenSurface& seen) const {
   if (objects_[seen.solid] != nullptr) {
-    return seen.face == kAnyFace || !solids_[seen.solid].is_flat(seen.leaf, seen.face);
+    return seen.face == kAnyFace || !solids_[seen.solid].shape->is_flat(seen.leaf, seen.face);
   }
   const GeometryRecord& record = scene_.geometry().embree.records()[records_[seen.solid]];
   return record.normals != nullptr;
@@ -114,11 +112,16 @@ bool BeamScene::is_curved(const SeenSurface& seen) const {
 
 SurfaceHit BeamScene::csg_hit(const SeenSurface& seen, const Ray& world) const {
   const CsgObject& object = *objects_[seen.solid];
-  const CsgSolid& solid = *solids_[seen.solid].solid;
+  const BeamShape& shape = *solids_[seen.solid].shape;
+  const CsgSolid& solid = shape.csg();
   const Ray own{transform_point(object.object_from_world, world.origin),
                 transform_vector(object.object_from_world, world.direction)};
-  const Meeting met = depth_of(solid, seen, own);
-  const CsgBoundary boundary{met.depth, seen.leaf, met.face, seen.entering};
+  const Facet* facet = shape.facet(seen.leaf);
+  const std::uint32_t leaf = facet != nullptr ? facet->source : seen.leaf;
+  const Meeting met = facet != nullptr
+                          ? Meeting{plane_depth(shape.planes()[facet->plane.plane], own), facet->triangle}
+                          : depth_of(solid, seen, own);
+  const CsgBoundary boundary{met.depth, leaf, met.face, seen.entering};
   const Vec3d normal = object.world_from_object_normal * solid.outward_normal(boundary, own);
   SurfaceHit hit;
   hit.t = float(met.depth);
@@ -126,7 +129,7 @@ SurfaceHit BeamScene::csg_hit(const SeenSurface& seen, const Ray& world) const {
   hit.geometric_normal = hit.shading_normal = Vec3f(normal * (1 / length(normal)));
   hit.geometry = object.record;
   hit.position_error = scene_.geometry().embree.records()[object.record].position_error;
-  hit.material = solid.leaf(seen.leaf).material;
+  hit.material = solid.leaf(leaf).material;
   hit.object = object.object;
   hit.side = seen.entering ? Side::outside : Side::inside;
   hit.feature = Feature::csg;
@@ -134,12 +137,13 @@ SurfaceHit BeamScene::csg_hit(const SeenSurface& seen, const Ray& world) const {
 }
 
 SurfaceHit BeamScene::mesh_hit(const SeenSurface& seen, const Ray& world) const {
-  const BeamMesh& mesh = *solids_[seen.solid].mesh;
-  const std::uint32_t triangle = mesh.facets()[seen.leaf].triangle;
+  const BeamShape& shape = *solids_[seen.solid].shape;
+  const Facet& facet = *shape.facet(seen.leaf);
+  const std::uint32_t triangle = facet.triangle;
   const std::uint32_t record = records_[seen.solid];
   const WorldTriangle w = world_triangle(
       scene_.scene(), scene_.geometry().embree.records()[record], triangle);
-  const double t = plane_depth(mesh.planes()[seen.leaf], world);
+  const double t = plane_depth(shape.planes()[facet.plane.plane], world);
   const Vec3d p = world.origin + world.direction * t;
   const Vec3d a = Vec3d(w.p1) - Vec3d(w.p0), b = Vec3d(w.p2) - Vec3d(w.p0), q = p - Vec3d(w.p0);
   const Vec3d n = cross(a, b);

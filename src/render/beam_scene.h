@@ -10,7 +10,7 @@
 #include <span>
 #include <vector>
 
-#include "beam/beam_mesh.h"
+#include "beam/beam_shape.h"
 #include "beam/beam_view.h"
 #include "beam/region_look.h"
 #include "render/prepared_scene.h"
@@ -39,8 +39,8 @@ class BeamScene {
 
   const PreparedScene& scene_;
   EyeRays eye_;
-  std::vector<std::unique_ptr<const CsgSolid>> csg_;  // by tree; null: of no object
-  std::vector<std::unique_ptr<const BeamMesh>> meshes_;
+  std::vector<std::unique_ptr<const BeamShape>> trees_;  // by tree; null: of no object
+  std::vector<std::unique_ptr<const BeamShape>> meshes_;
   std::vector<BeamSolid> solids_;
   std::vector<const CsgObject*> objects_;  // by solid; null: a mesh
   std::vector<std::uint32_t> records_;     // by solid, of EmbreeScene::records()

@@ -17,7 +17,7 @@ bool is_blocked(const BeamScene& scene, Vec3d from, Vec3d to) {
     const Vec3d a = transform_point(s.object_from_world, from);
     const Vec3d b = transform_point(s.object_from_world, to);
     for (const CsgBoundary& boundary :
-         search.find(*s.solid, view_of(s.solid->root()), {a, b - a})) {
+         search.find(s.shape->csg(), view_of(s.shape->csg().root()), {a, b - a})) {
       if (boundary.t > 1e-9 && boundary.t < 1 - 1e-9) return true;
     }
   }

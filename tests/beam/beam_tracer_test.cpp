@@ -178,7 +178,7 @@ TEST(beam_tracer, bounds_hold_for_every_kind_of_leaf) {
   for (int i = 0; i < 30; ++i) {
     BeamScene scene;
     scene.width = scene.height = 6;
-    scene.add_any(random_tree(random, 1 + int(random() % 2)));
+    scene.add(random_tree(random, 1 + int(random() % 2)));
     const Vec3d from = random_unit(random) * uniform(random, 2.5, 6);
     scene.eye = look_at(from, random_vector(random, 0.5), 35, scene.width, scene.height);
     expect_sound(scene, "tree " + std::to_string(i), 12);
@@ -206,9 +206,8 @@ TEST(beam_tracer, bounds_hold_for_meshes) {
       triangles.push_back(
           {{closed.vertices[t[0]], closed.vertices[t[1]], closed.vertices[t[2]]}, 0});
     }
-    const BeamMesh mesh(triangles);
     if (i % 2 == 0) scene.add(random_convex_tree(random, 1));
-    scene.placed.push_back({nullptr, {}, &mesh});
+    scene.add(triangles);
     const Vec3d from = random_unit(random) * uniform(random, 0.2, 6);
     scene.eye = look_at(from, random_vector(random, 0.5), 35, scene.width, scene.height);
     expect_sound(scene, "mesh " + std::to_string(i), 12);
@@ -218,7 +217,7 @@ TEST(beam_tracer, bounds_hold_for_meshes) {
 // A torus before a wall: where no outline is near, it is certain.
 TEST(beam_tracer, the_inside_of_a_torus_is_certified) {
   BeamScene scene;
-  scene.add_any(one_leaf(CsgTorus{1, 0.4}));
+  scene.add(one_leaf(CsgTorus{1, 0.4}));
   scene.eye = look_at({0, -4, 3}, {0, 0, 0}, 45, scene.width, scene.height);
   const Report report = check_scene(scene, 16);
   EXPECT_EQ(report.missed, 0);

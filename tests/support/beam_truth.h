@@ -1,13 +1,13 @@
 // beam_truth.h — what rays see, sample by sample, and random scenes of supported leaves
 #pragma once
 
+#include <deque>
 #include <map>
 #include <optional>
 #include <tuple>
 #include <vector>
 
 #include "beam/beam_tracer.h"
-#include "beam/convex_solid.h"
 #include "beam/ray_sight.h"
 #include "support/csg_oracle.h"
 
@@ -22,21 +22,15 @@ inline SeenKey key_of(const std::optional<SeenSurface>& seen) {
 }
 
 struct BeamScene {
-  std::vector<CsgSolid> solids;
+  std::deque<BeamShape> shapes;
   std::vector<BeamSolid> placed;
   EyeRays eye;
   int width = 16, height = 16;
 
-  void add(const CsgTree& tree, const Affine3d& world_from_object = {}) {
-    solids.reserve(16);
-    solids.emplace_back(tree);
-    placed.push_back({&solids.back(), inverse(world_from_object)});
-  }
-  // Leaves that aren't convex are cut where they can be.
-  void add_any(const CsgTree& tree, const Affine3d& world_from_object = {}) {
-    solids.reserve(16);
-    solids.push_back(make_convex_solid(tree));
-    placed.push_back({&solids.back(), inverse(world_from_object)});
+  // Of a CsgTree or of triangles.
+  template <class Described>
+  void add(const Described& described, const Affine3d& world_from_object = {}) {
+    placed.push_back({&shapes.emplace_back(described), inverse(world_from_object)});
   }
 };
 
@@ -55,7 +49,7 @@ inline EyeRays look_at(Vec3d from, Vec3d to, double fov_deg, int width, int heig
 inline std::optional<RaySight> see(const BeamScene& scene, double x, double y) {
   std::vector<BeamPart> roots;
   for (std::uint32_t i = 0; i < scene.placed.size(); ++i) {
-    roots.push_back({i, scene.placed[i].root()});
+    roots.push_back({i, scene.placed[i].shape->root()});
   }
   return see(scene.placed, roots, ray_through(scene.eye, {x, y}));
 }
