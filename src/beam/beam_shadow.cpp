@@ -158,7 +158,7 @@ const ShadowLists::List& ShadowLooker::list_for(LitPlane lit, std::uint32_t ligh
     if (!root.is_decided()) roots.push_back({i, std::move(root)});
   }
   const double end = depth_of(list.view.plane(lit.solid, lit.plane), lists.tile_);
-  list.parts = prune_parts(list.view, roots, lists.tile_, end);
+  list.parts = prune_parts(list.view, roots, lists.tile_, end).parts;
   return lists.lists_.emplace(key, std::move(list)).first->second;
 }
 
@@ -180,9 +180,9 @@ std::optional<LookTree> ShadowLooker::look_from_light(LitPlane lit, std::uint32_
   if (eye_side * side_of_light(lit, light) != Sign::positive) return std::nullopt;
   const ShadowLists::List& list = list_for(lit, light, lists);
   const double end = depth_of(list.view.plane(lit.solid, lit.plane), rect);
-  const std::vector<BeamPart> parts = prune_parts(list.view, list.parts, rect, end);
-  if (parts.empty()) return LookTree{{LookNode{}}, {}, true, end};  // nothing in the way
-  return look(list.view, parts, rect, end, {.only = lit});
+  const BeamList in_the_way = prune_parts(list.view, list.parts, rect, end);
+  if (in_the_way.parts.empty()) return LookTree{{LookNode{}}, {}, true, end};  // nothing in the way
+  return look(list.view, in_the_way, rect, end, {.only = lit});
 }
 
 }  // namespace arris

@@ -44,9 +44,10 @@ class BeamTracer::Tracer {
   // Of at least a pixel.
   void visit(const Rect& rect, const std::vector<BeamPart>& above, double depth_end) {
     if (rect.x0 >= shared_.width_px_ || rect.y0 >= shared_.height_px_) return;
-    const std::vector<BeamPart> parts = prune_parts(shared_.view_, above, rect, depth_end);
+    const BeamList list = prune_parts(shared_.view_, above, rect, depth_end);
+    const std::vector<BeamPart>& parts = list.parts;
     ++stats_.regions;
-    LookTree tree = look(shared_.view_, parts, rect, depth_end);
+    LookTree tree = look(shared_.view_, list, rect, depth_end);
     const double next_end = std::min(depth_end, tree.depth_end);
     if (tree.complete && add_shadows(tree, rect)) {
       for (double y = rect.y0; y < rect.y1; ++y) {
@@ -66,9 +67,10 @@ class BeamTracer::Tracer {
  private:
   // Of less than a pixel.
   void visit_part(const Rect& rect, const std::vector<BeamPart>& above, double depth_end) {
-    const std::vector<BeamPart> parts = prune_parts(shared_.view_, above, rect, depth_end);
+    const BeamList list = prune_parts(shared_.view_, above, rect, depth_end);
+    const std::vector<BeamPart>& parts = list.parts;
     ++stats_.regions;
-    LookTree tree = look(shared_.view_, parts, rect, depth_end);
+    LookTree tree = look(shared_.view_, list, rect, depth_end);
     const bool smallest = rect.width() <= least_region(parts);
     const bool complete = (tree.complete || smallest) && add_shadows(tree, rect);
     if (complete || smallest) {
@@ -298,7 +300,7 @@ std::vector<BeamTile> BeamTracer::make_tiles() const {
       const auto parent = std::ranges::find_if(level, [&](const BeamTile& t) {
         return t.rect.x0 <= r.x0 && t.rect.x1 >= r.x1 && t.rect.y0 <= r.y0 && t.rect.y1 >= r.y1;
       });
-      next[i].parts = prune_parts(view_, parent->parts, r, kInfinity);
+      next[i].parts = prune_parts(view_, parent->parts, r, kInfinity).parts;
     });
     level = std::move(next);
   }

@@ -257,7 +257,8 @@ bool BeamView::starts_in_volume(std::uint32_t solid, std::uint32_t leaf) const {
 }
 
 // Of the corners' triple product as the origin sees them, which has the sign that all sides have where a ray meets it.
-int BeamView::facet_turn(std::uint32_t solid, const Facet& facet) const {
+int BeamView::make_facet_turn(std::uint32_t solid, std::uint32_t leaf) const {
+  const Facet& facet = *shape(solid).facet(leaf);
   const std::vector<BeamShape::Edge>& edges = shape(solid).edges();
   const auto corner = [&](std::size_t k) {
     const BeamShape::Edge& e = edges[facet.edges[k]];
@@ -350,6 +351,14 @@ BeamView::BeamView(std::span<const BeamSolid> solids, const EyeRays& eye)
     }
   }
   windows_ = std::move(windows);
+  std::vector<std::vector<std::int8_t>> turns;
+  for (std::uint32_t i = 0; i < solids.size(); ++i) {
+    std::vector<std::int8_t>& of_solid = turns.emplace_back(shape(i).leaf_count());
+    for (std::uint32_t leaf = 0; leaf < of_solid.size(); ++leaf) {
+      if (shape(i).facet(leaf) != nullptr) of_solid[leaf] = std::int8_t(make_facet_turn(i, leaf));
+    }
+  }
+  turns_ = std::move(turns);
 }
 
 BeamView::BeamView(std::span<const BeamSolid> solids, const EyeRays& eye, LitPlane lit,

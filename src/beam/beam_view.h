@@ -106,7 +106,9 @@ class BeamView {
   // Is the origin of all rays inside the volume? A directional light is outside of all.
   [[nodiscard]] bool starts_in_volume(std::uint32_t solid, std::uint32_t leaf) const;
   // 1: the rays see the facet's corners turn counter-clockwise; -1: clockwise; 0: they run along it.
-  [[nodiscard]] int facet_turn(std::uint32_t solid, const Facet& facet) const;
+  [[nodiscard]] int facet_turn(std::uint32_t solid, std::uint32_t leaf) const {
+    return turns_.empty() ? make_facet_turn(solid, leaf) : turns_[solid][leaf];
+  }
   [[nodiscard]] std::size_t solid_count() const { return solids_.size(); }
   [[nodiscard]] bool direction_fixed() const { return frames_[0].direction_fixed; }
   // Of a leaf in the picture; rays outside miss it.
@@ -133,6 +135,7 @@ class BeamView {
     Mat3d linear;  // rows: x, y, weight
     Vec3d offset;
   };
+  [[nodiscard]] int make_facet_turn(std::uint32_t solid, std::uint32_t leaf) const;
   [[nodiscard]] LeafWindow make_window(std::uint32_t solid, std::uint32_t leaf) const;
   [[nodiscard]] const PlaneForm& remembered_plane(std::uint32_t solid, std::uint32_t index) const;
   [[nodiscard]] const Linear& remembered_side(std::uint32_t solid, std::uint32_t edge) const;
@@ -148,6 +151,7 @@ class BeamView {
   std::vector<std::vector<PlaneForm>> planes_;
   std::vector<std::vector<QuadricForm>> quadrics_;
   std::vector<std::vector<Linear>> sides_;
+  std::vector<std::vector<std::int8_t>> turns_;  // by leaf
   mutable std::unordered_map<std::uint64_t, Linear> asked_sides_;
   mutable std::unordered_map<std::uint64_t, PlaneForm> asked_planes_;
   mutable std::unordered_map<std::uint64_t, QuadricForm> asked_quadrics_;

@@ -53,7 +53,7 @@ class SpanMaker {
  private:
   // Met by rays that pass all edges on the side that the corners' turn tells; entered for good.
   std::optional<LeafSpan> make_facet(const Facet& facet) {
-    const Sign wanted = Sign(view_.facet_turn(place_.solid, facet));
+    const Sign wanted = Sign(view_.facet_turn(place_.solid, place_.leaf));
     if (wanted == Sign::unknown) return std::nullopt;  // it is seen as a line
     bool within = true;
     for (std::size_t k = 0; k < 3; ++k) {

@@ -16,6 +16,7 @@ struct SpanSlot {
   std::uint32_t part = 0, slot = 0;
   LeafPlace place;
   std::optional<LeafSpan> span;
+  bool is_goal = false;
 };
 
 Cover cover_at(const SpanSlot& s, double depth) {
@@ -84,12 +85,14 @@ struct Event {
 
 class Looker {
  public:
-  Looker(const BeamView& view, const std::vector<BeamPart>& parts, const Rect& rect,
-         double depth_end, const LookOptions& options)
-      : view_(view), parts_(parts), rect_(rect), depth_end_(depth_end), options_(options) {}
+  Looker(const BeamView& view, const BeamList& list, const Rect& rect, double depth_end,
+         const LookOptions& options)
+      : view_(view), parts_(list.parts), rect_(rect), depth_end_(depth_end), options_(options) {
+    if (options_.only) parts_.push_back(make_goal(*options_.only));
+    set_first_spans(list.spans);
+  }
 
   LookTree run() {
-    make_first_spans();
     follow();
     tree_.complete = std::ranges::none_of(
         tree_.nodes, [](const LookNode& n) { return n.kind == LookNode::Kind::unknown; });
@@ -170,10 +173,8 @@ class Looker {
     return node;
   }
 
-  // The spans without assumptions, once.
-  void make_first_spans() {
-    const std::vector<Assumption> none;
-    const SignOracle oracle(rect_, none);
+  // The spans without assumptions.
+  void set_first_spans(const std::vector<LeafSpan>& spans) {
     for (std::uint32_t p = 0; p < parts_.size(); ++p) {
       first_of_part_.push_back(std::uint32_t(first_slots_.size()));
       const auto& leaves = parts_[p].expression.leaves();
@@ -181,10 +182,19 @@ class Looker {
       for (std::uint32_t slot = 0; slot < leaves.size(); ++slot) {
         const LeafPlace place{parts_[p].solid, leaves[slot]};
         first_slots_.push_back(
-            {p, slot, place,
-             is_goal ? make_goal_span() : make_span(view_, place, depth_end_, oracle)});
+            {p, slot, place, is_goal ? make_goal_span() : spans[first_slots_.size()], is_goal});
       }
     }
+  }
+  // A part of one leaf, of which only the span counts.
+  static BeamPart make_goal(const LitPlane& plane) {
+    static const CsgExpression kGoal = [] {
+      CsgTree tree;
+      tree.nodes.push_back({0, CsgOperation::unite, {}});
+      tree.leaves.emplace_back();
+      return CsgExpression(tree, {true});
+    }();
+    return {plane.solid, kGoal};
   }
   // The plane that the light is to reach is entered for good.
   [[nodiscard]] LeafSpan make_goal_span() const {
@@ -225,8 +235,7 @@ class Looker {
   void make_spans(const SignOracle& oracle, const std::vector<Assumption>& of_one) {
     slots_ = first_slots_;
     for (SpanSlot& s : slots_) {
-      const bool is_goal = options_.only && s.part + 1 == parts_.size();
-      if (is_goal ||
+      if (s.is_goal ||
           std::ranges::none_of(of_one, [&](const Assumption& a) { return concerns(a, s.place); })) {
         continue;
       }
@@ -250,12 +259,45 @@ class Looker {
     make_spans(oracle, of_one);
     window_assumptions_ = std::move(of_one);
     has_window_ = true;
-    std::vector<double> depths{0};
+    if (!is_reduced_) {
+      start_.clear();
+      for (std::uint32_t p = 0; p < parts_.size(); ++p) start_.push_back(value_at(p, 0));
+    }
+    window_ = are_unions() ? window_of_unions() : scan_depths();
+    if (window_.lo == kInfinity) return false;
+    widen_window();
+    if (assumptions_.empty()) {
+      tree_.depth_end = window_.hi;
+      reduce();
+    }
+    return true;
+  }
+
+  // Where the values differ from those at the start, and where they certainly do.
+  [[nodiscard]] Interval scan_depths() const {
+    Interval window{kInfinity, kInfinity};
+    for (const double depth : depths_to_scan()) {
+      bool changed = false;
+      for (std::uint32_t p = 0; p < parts_.size(); ++p) {
+        const Cover value = value_at(p, depth);
+        if (value == start_[p] && value != Cover::on) continue;
+        window.lo = std::min(window.lo, depth);
+        changed = changed || (value != Cover::on && start_[p] != Cover::on);
+      }
+      if (!changed) continue;
+      window.hi = depth;
+      break;
+    }
+    return window;
+  }
+  // Ends of spans, and one between each two.
+  [[nodiscard]] std::vector<double> depths_to_scan() const {
+    std::vector<double> depths{base_};
     for (const SpanSlot& s : slots_) {
       if (!s.span) continue;
       for (const double d :
            {s.span->enter.lo, s.span->enter.hi, s.span->leave.lo, s.span->leave.hi}) {
-        if (d > 0 && d < kInfinity) depths.push_back(d);
+        if (d > base_ && d < kInfinity) depths.push_back(d);
       }
     }
     std::ranges::sort(depths);
@@ -266,25 +308,58 @@ class Looker {
       depths.push_back(depths[i] / 2 + next / 2);
     }
     std::ranges::sort(depths);
-    window_ = {kInfinity, kInfinity};
-    std::vector<Cover> start;
-    for (std::uint32_t p = 0; p < parts_.size(); ++p) start.push_back(value_at(p, 0));
-    for (const double depth : depths) {
-      bool changed = false;
-      for (std::uint32_t p = 0; p < parts_.size(); ++p) {
-        const Cover value = value_at(p, depth);
-        if (value == start[p] && value != Cover::on) continue;
-        window_.lo = std::min(window_.lo, depth);
-        changed = changed || (value != Cover::on && start[p] != Cover::on);
+    return depths;
+  }
+
+  // Meshes, and much else, are unions of leaves: the first one certainly entered ends the window.
+  [[nodiscard]] bool are_unions() const {
+    for (std::uint32_t p = 0; p < parts_.size(); ++p) {
+      if (start_[p] != Cover::out) return false;
+      const std::vector<CsgStep>& steps = parts_[p].expression.steps();
+      const std::size_t leaves = steps.size() > 1 ? steps.size() - 1 : 1;
+      if (steps.size() > 1 &&
+          (steps.back().kind != CsgStep::Kind::unite || steps.back().value != leaves)) {
+        return false;
       }
-      if (!changed) continue;
-      window_.hi = depth;
-      break;
+      for (std::size_t i = 0; i < leaves; ++i) {
+        if (steps[i].kind != CsgStep::Kind::leaf) return false;
+      }
     }
-    if (window_.lo == kInfinity) return false;
-    widen_window();
-    if (assumptions_.empty()) tree_.depth_end = window_.hi;
     return true;
+  }
+  [[nodiscard]] Interval window_of_unions() const {
+    Interval window{kInfinity, kInfinity};
+    for (const SpanSlot& s : slots_) {
+      if (!s.span) continue;
+      window.lo = std::min(window.lo, s.span->enter.lo);
+      if (s.span->certain) window.hi = std::min(window.hi, next_up(s.span->enter.hi));
+    }
+    return window;
+  }
+
+  // What does not matter in the window without assumptions doesn't under any.
+  void reduce() {
+    if (is_reduced_ || std::ranges::find(start_, Cover::on) != start_.end()) return;
+    is_reduced_ = true;
+    base_ = window_.lo;
+    std::vector<SpanSlot> kept;
+    for (std::size_t i = 0; i < window_slots_.size(); ++i) {
+      kept.push_back(*window_slots_[i]);
+      kept.back().part = part_of_slot_[i];
+    }
+    std::vector<Cover> start;
+    for (const std::uint32_t p : origin_of_pruned_) start.push_back(start_[p]);
+    start_ = std::move(start);
+    parts_ = pruned_;
+    first_of_part_.clear();
+    std::uint32_t first = 0;
+    for (const BeamPart& part : parts_) {
+      first_of_part_.push_back(first);
+      first += std::uint32_t(part.expression.leaves().size());
+    }
+    first_slots_ = std::move(kept);
+    slots_ = first_slots_;
+    for (std::size_t i = 0; i < slots_.size(); ++i) window_slots_[i] = &slots_[i];
   }
 
   static bool same_assumption(const Assumption& a, const Assumption& b) {
@@ -312,6 +387,7 @@ class Looker {
 
   void prune_to_window() {
     pruned_.clear();
+    origin_of_pruned_.clear();
     window_slots_.clear();
     for (std::uint32_t p = 0; p < parts_.size(); ++p) {
       std::vector<Cover> covers;
@@ -329,6 +405,7 @@ class Looker {
         part_of_slot_[window_slots_.size() - 1] = std::uint32_t(pruned_.size());
       }
       pruned_.push_back(std::move(part));
+      origin_of_pruned_.push_back(p);
     }
   }
 
@@ -438,7 +515,7 @@ class Looker {
   }
 
   const BeamView& view_;
-  const std::vector<BeamPart>& parts_;
+  std::vector<BeamPart> parts_;
   Rect rect_;
   double depth_end_;
   LookOptions options_;
@@ -449,26 +526,34 @@ class Looker {
   bool has_window_ = false;
   std::vector<std::uint32_t> first_of_part_;
   Interval window_;
+  std::vector<Cover> start_;  // the parts' values where the window may begin
+  double base_ = 0;           // that depth
+  bool is_reduced_ = false;
   std::vector<BeamPart> pruned_;
+  std::vector<std::uint32_t> origin_of_pruned_;  // their indices in parts_
   std::vector<SpanSlot*> window_slots_;
   std::vector<std::uint32_t> part_of_slot_;
 };
 
 }  // namespace
 
-std::vector<BeamPart> prune_parts(const BeamView& view, const std::vector<BeamPart>& parts,
-                                  const Rect& rect, double depth_end) {
+BeamList prune_parts(const BeamView& view, const std::vector<BeamPart>& parts, const Rect& rect,
+                     double depth_end) {
   const std::vector<Assumption> none;
   const SignOracle oracle(rect, none);
-  std::vector<BeamPart> pruned;
+  BeamList list;
   std::vector<Cover> covers;
+  std::vector<std::optional<LeafSpan>> spans;
   for (const BeamPart& part : parts) {
     covers.clear();
+    spans.clear();
     bool any = false;
-    for (const std::uint32_t leaf : part.expression.leaves()) {
+    const std::vector<std::uint32_t>& leaves = part.expression.leaves();
+    for (const std::uint32_t leaf : leaves) {
       const bool is_near = view.window(part.solid, leaf).meets(rect);
-      const auto span =
-          is_near ? make_span(view, {part.solid, leaf}, depth_end, oracle) : std::nullopt;
+      spans.push_back(is_near ? make_span(view, {part.solid, leaf}, depth_end, oracle)
+                              : std::nullopt);
+      const std::optional<LeafSpan>& span = spans.back();
       Cover cover = Cover::on;
       if (!span) cover = Cover::out;
       if (span && span->starts_inside && span->certain &&
@@ -479,9 +564,15 @@ std::vector<BeamPart> prune_parts(const BeamView& view, const std::vector<BeamPa
       covers.push_back(cover);
     }
     BeamPart kept{part.solid, any ? part.expression.prune(covers) : part.expression};
-    if (!kept.expression.is_decided()) pruned.push_back(std::move(kept));
+    if (kept.expression.is_decided()) continue;
+    std::size_t at = 0;
+    for (const std::uint32_t leaf : kept.expression.leaves()) {
+      while (leaves[at] != leaf) ++at;
+      list.spans.push_back(std::move(*spans[at]));
+    }
+    list.parts.push_back(std::move(kept));
   }
-  return pruned;
+  return list;
 }
 
 namespace {
@@ -490,26 +581,12 @@ namespace {
 // parts of the rectangle will see fewer.
 constexpr std::uint32_t kWindowLeaves = 8;
 
-// A part of one leaf, of which only the span counts.
-CsgExpression make_goal() {
-  CsgTree tree;
-  tree.nodes.push_back({0, CsgOperation::unite, {}});
-  tree.leaves.emplace_back();
-  return CsgExpression(tree, {true});
-}
-
 }  // namespace
 
-LookTree look(const BeamView& view, const std::vector<BeamPart>& parts, const Rect& rect,
-              double depth_end, const LookOptions& options) {
-  std::size_t leaves = 0;
-  for (const BeamPart& part : parts) leaves += part.expression.leaves().size();
-  if (leaves <= options.most_leaves * kWindowLeaves) {
-    if (!options.only) return Looker(view, parts, rect, depth_end, options).run();
-    static const CsgExpression kGoal = make_goal();
-    std::vector<BeamPart> with_goal = parts;
-    with_goal.push_back({options.only->solid, kGoal});
-    return Looker(view, with_goal, rect, depth_end, options).run();
+LookTree look(const BeamView& view, const BeamList& list, const Rect& rect, double depth_end,
+              const LookOptions& options) {
+  if (list.spans.size() <= options.most_leaves * kWindowLeaves) {
+    return Looker(view, list, rect, depth_end, options).run();
   }
   LookTree tree;
   tree.complete = false;

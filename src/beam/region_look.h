@@ -66,12 +66,18 @@ struct LookOptions {
   std::uint32_t most_leaves = 16;
 };
 
-// The leaves that a beam may meet before depth_end: `parts` pruned, decided ones left out.
-std::vector<BeamPart> prune_parts(const BeamView& view, const std::vector<BeamPart>& parts,
-                                  const Rect& rect, double depth_end);
+// What a beam may meet.
+struct BeamList {
+  std::vector<BeamPart> parts;  // undecided
+  std::vector<LeafSpan> spans;  // of the leaves of all parts in turn
+};
 
-// Precondition: `parts` are undecided.
-LookTree look(const BeamView& view, const std::vector<BeamPart>& parts, const Rect& rect,
-              double depth_end, const LookOptions& options = {});
+// `parts` as the beam meets them before depth_end.
+BeamList prune_parts(const BeamView& view, const std::vector<BeamPart>& parts, const Rect& rect,
+                     double depth_end);
+
+// Precondition: the list is that of the rectangle and depth_end.
+LookTree look(const BeamView& view, const BeamList& list, const Rect& rect, double depth_end,
+              const LookOptions& options = {});
 
 }  // namespace arris
