@@ -53,7 +53,7 @@ struct BeamStats {
 struct BeamOptions {
   double tolerance = 1.0 / 512;    // of hi - lo
   double least_region = 1.0 / 64;       // of a pixel's side
-  double least_open_region = 1.0 / 16;  // where a leaf that is not convex is among what may be seen
+  double least_open_region = 1.0 / 8;   // where a leaf that is not convex is among what may be seen
   int tile_px = 16;                // a power of two
   int threads = 0;                 // 0: all
 };

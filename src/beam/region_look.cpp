@@ -6,6 +6,8 @@
 #include <ranges>
 #include <span>
 
+#include "beam/cover_sweep.h"
+
 namespace arris {
 namespace {
 
@@ -273,42 +275,54 @@ class Looker {
     return true;
   }
 
-  // Where the values differ from those at the start, and where they certainly do.
-  [[nodiscard]] Interval scan_depths() const {
-    Interval window{kInfinity, kInfinity};
-    for (const double depth : depths_to_scan()) {
-      bool changed = false;
-      for (std::uint32_t p = 0; p < parts_.size(); ++p) {
-        const Cover value = value_at(p, depth);
-        if (value == start_[p] && value != Cover::on) continue;
-        window.lo = std::min(window.lo, depth);
-        changed = changed || (value != Cover::on && start_[p] != Cover::on);
-      }
-      if (!changed) continue;
-      window.hi = depth;
-      break;
-    }
-    return window;
-  }
-  // Ends of spans, and one between each two.
-  [[nodiscard]] std::vector<double> depths_to_scan() const {
-    std::vector<double> depths{base_};
+  // A leaf's cover from a depth on.
+  struct Change {
+    double depth = 0;
+    std::uint32_t part = 0, slot = 0;
+    Cover cover = Cover::out;
+  };
+  [[nodiscard]] std::vector<Change> make_changes() const {
+    std::vector<Change> changes;
     for (const SpanSlot& s : slots_) {
       if (!s.span) continue;
-      for (const double d :
-           {s.span->enter.lo, s.span->enter.hi, s.span->leave.lo, s.span->leave.hi}) {
-        if (d > base_ && d < kInfinity) depths.push_back(d);
+      const auto add = [&](double depth, Cover cover) {
+        if (depth < kInfinity) changes.push_back({std::max(depth, base_), s.part, s.slot, cover});
+      };
+      const LeafSpan& span = *s.span;
+      if (!span.starts_inside) add(span.enter.lo, Cover::on);
+      if (span.certain && span.starts_inside) add(base_, Cover::in);
+      if (span.certain && !span.starts_inside) add(span.enter.hi, Cover::in);
+      if (!span.certain && span.starts_inside) add(base_, Cover::on);
+      add(span.leave.lo, Cover::on);
+      add(span.leave.hi, Cover::out);
+    }
+    // Those of one leaf stay in their order.
+    std::ranges::stable_sort(changes, {}, &Change::depth);
+    return changes;
+  }
+
+  // Where the values differ from those at the start, and where they certainly do.
+  [[nodiscard]] Interval scan_depths() const {
+    const std::vector<Change> changes = make_changes();
+    std::vector<CoverSweep> values;
+    for (const BeamPart& part : parts_) values.emplace_back(part.expression);
+    Interval window{kInfinity, kInfinity};
+    for (std::size_t i = 0; i < changes.size();) {
+      const double depth = changes[i].depth;
+      for (; i < changes.size() && changes[i].depth == depth; ++i) {
+        values[changes[i].part].set(changes[i].slot, changes[i].cover);
+      }
+      for (std::uint32_t p = 0; p < parts_.size(); ++p) {
+        const Cover value = values[p].value();
+        if (value == start_[p] && value != Cover::on) continue;
+        window.lo = std::min(window.lo, depth);
+        if (value == Cover::on || start_[p] == Cover::on) continue;
+        const double next = i < changes.size() ? changes[i].depth : 2 * depth + 1;
+        window.hi = depth / 2 + next / 2;
+        return window;
       }
     }
-    std::ranges::sort(depths);
-    depths.erase(std::unique(depths.begin(), depths.end()), depths.end());
-    const std::size_t count = depths.size();
-    for (std::size_t i = 0; i < count; ++i) {
-      const double next = i + 1 < count ? depths[i + 1] : 2 * depths[i] + 1;
-      depths.push_back(depths[i] / 2 + next / 2);
-    }
-    std::ranges::sort(depths);
-    return depths;
+    return window;
   }
 
   // Meshes, and much else, are unions of leaves: the first one certainly entered ends the window.
@@ -342,20 +356,19 @@ class Looker {
     if (is_reduced_ || std::ranges::find(start_, Cover::on) != start_.end()) return;
     is_reduced_ = true;
     base_ = window_.lo;
-    std::vector<SpanSlot> kept;
-    for (std::size_t i = 0; i < window_slots_.size(); ++i) {
-      kept.push_back(*window_slots_[i]);
-      kept.back().part = part_of_slot_[i];
-    }
     std::vector<Cover> start;
     for (const std::uint32_t p : origin_of_pruned_) start.push_back(start_[p]);
     start_ = std::move(start);
     parts_ = pruned_;
     first_of_part_.clear();
-    std::uint32_t first = 0;
-    for (const BeamPart& part : parts_) {
-      first_of_part_.push_back(first);
-      first += std::uint32_t(part.expression.leaves().size());
+    std::vector<SpanSlot> kept;
+    for (std::uint32_t p = 0; p < parts_.size(); ++p) {
+      first_of_part_.push_back(std::uint32_t(kept.size()));
+      for (std::uint32_t slot = 0; slot < parts_[p].expression.leaves().size(); ++slot) {
+        kept.push_back(*window_slots_[kept.size()]);
+        kept.back().part = p;
+        kept.back().slot = slot;
+      }
     }
     first_slots_ = std::move(kept);
     slots_ = first_slots_;
@@ -579,7 +592,7 @@ namespace {
 
 // Of so many leaves for each that is put in order it is asked whether they matter at the depths in question. Of more,
 // parts of the rectangle will see fewer.
-constexpr std::uint32_t kWindowLeaves = 8;
+constexpr std::uint32_t kWindowLeaves = 16;
 
 }  // namespace
 

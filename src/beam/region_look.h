@@ -61,9 +61,9 @@ struct LookOptions {
   // Set: only whether the rays meet this plane before any surface of `parts`. What they meet before it counts as one
   // surface, which is no plane, so that its order does not matter. Precondition: every ray meets the plane.
   std::optional<LitPlane> only;
-  std::uint32_t most_signs = 6;  // followed both ways, one below the other
+  std::uint32_t most_signs = 4;  // followed both ways, one below the other
   // That are put in order along the ray. Of more, all is unknown; of many more, without candidates.
-  std::uint32_t most_leaves = 16;
+  std::uint32_t most_leaves = 8;
 };
 
 // What a beam may meet.
