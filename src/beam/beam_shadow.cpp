@@ -56,55 +56,45 @@ struct Placed {
   std::optional<LookTree> seen_by_light;  // nothing: the light is behind
 };
 
-// The light's tree in the place of a surface's node: its ends are that surface, lit or not. They go to `ends`.
+// The light's tree in the place of a surface's node: its ends are that surface, lit or not.
 void splice(LookTree& tree, std::uint32_t at, std::uint32_t bit,
-            const std::optional<LookTree>& seen_by_light, std::vector<std::uint32_t>& ends) {
+            const std::optional<LookTree>& seen_by_light) {
+  LookNode surface = tree.nodes[at];
   if (!seen_by_light) {
-    tree.nodes[at].lit |= bit;
-    tree.nodes[at].lit_known |= bit;
-    ends.push_back(at);
+    surface.lit |= bit;
+    surface.lit_known |= bit;
+    tree.nodes[at] = surface;
     return;
   }
-  const LookNode surface = tree.nodes[at];
-  const auto base = std::uint32_t(tree.nodes.size()) - 1;
-  const auto place = [&](std::uint32_t i) { return i == 0 ? at : base + i; };
-  tree.nodes.resize(tree.nodes.size() + seen_by_light->nodes.size() - 1);
-  for (std::uint32_t i = 0; i < seen_by_light->nodes.size(); ++i) {
-    LookNode node = seen_by_light->nodes[i];
-    if (node.kind == LookNode::Kind::sign) {
-      node.negative = place(node.negative);
-      node.positive = place(node.positive);
-      tree.nodes[place(i)] = node;
-      continue;
-    }
+  replace_node(tree, at, *seen_by_light, [&](const LookNode& seen) {
     LookNode end = surface;
-    if (node.kind != LookNode::Kind::unknown) {
-      const bool reached =
-          node.kind == LookNode::Kind::nothing || node.seen.surface == surface.seen.surface;
-      end.lit_known |= bit;
-      end.lit |= reached ? bit : 0;
-    }
-    tree.nodes[place(i)] = end;
-    ends.push_back(place(i));
-  }
+    if (seen.kind == LookNode::Kind::unknown) return end;
+    const bool reached =
+        seen.kind == LookNode::Kind::nothing || seen.seen.surface == surface.seen.surface;
+    end.lit_known |= bit;
+    end.lit |= reached ? bit : 0;
+    return end;
+  });
 }
 
 }  // namespace
 
 bool ShadowLooker::add_shadows(LookTree& tree, const Rect& rect, ShadowLists& lists,
-                               std::uint64_t& regions) const {
+                               std::uint64_t& regions,
+                               const std::function<bool(const LookNode&)>& unlit) const {
   if (!(reach_ > 0) || !std::isfinite(reach_)) return true;
   bool complete = true;
   std::vector<std::uint32_t> surfaces;
   for (std::uint32_t i = 0; i < tree.nodes.size(); ++i) {
     const LookNode& node = tree.nodes[i];
     if (node.kind != LookNode::Kind::surface || !node.seen.surface.is_plane()) continue;
+    if (unlit && unlit(node)) continue;
     const BeamShape& shape = *solids_[node.seen.solid].shape;
     const bool is_facet = shape.facet(node.seen.leaf) != nullptr;
     if (!is_facet || shape.facet_count() <= kMostLitFacets) surfaces.push_back(i);
   }
   for (std::uint32_t light = 0; light < lights_.size(); ++light) {
-    std::vector<std::uint32_t> ends;
+    const auto first_new = std::uint32_t(tree.nodes.size());
     std::vector<Placed> looks;  // one for each plane, however often it is seen
     for (const std::uint32_t node : surfaces) {
       const BeamSurface surface = tree.nodes[node].seen.surface;
@@ -118,9 +108,13 @@ bool ShadowLooker::add_shadows(LookTree& tree, const Rect& rect, ShadowLists& li
         ++regions;
         complete = complete && (!known->seen_by_light || known->seen_by_light->complete);
       }
-      splice(tree, node, 1U << light, known->seen_by_light, ends);
+      splice(tree, node, 1U << light, known->seen_by_light);
     }
-    surfaces = std::move(ends);
+    // What stands in their places now, and what was added below.
+    std::erase_if(surfaces, [&](std::uint32_t i) { return tree.nodes[i].kind != LookNode::Kind::surface; });
+    for (std::uint32_t i = first_new; i < tree.nodes.size(); ++i) {
+      if (tree.nodes[i].kind == LookNode::Kind::surface) surfaces.push_back(i);
+    }
   }
   return complete;
 }

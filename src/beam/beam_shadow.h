@@ -10,6 +10,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <optional>
 #include <span>
@@ -44,8 +45,9 @@ class ShadowLooker {
 
   // Adds signs and bits to the tree's flat surfaces. False: a smaller rectangle may tell more. Regions looked at
   // are added to `regions`.
-  bool add_shadows(LookTree& tree, const Rect& rect, ShadowLists& lists,
-                   std::uint64_t& regions) const;
+  // Surfaces that are `unlit` need none.
+  bool add_shadows(LookTree& tree, const Rect& rect, ShadowLists& lists, std::uint64_t& regions,
+                   const std::function<bool(const LookNode&)>& unlit = {}) const;
 
  private:
   [[nodiscard]] Sign side_of_light(LitPlane lit, std::uint32_t light) const;

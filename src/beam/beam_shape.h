@@ -23,6 +23,9 @@
 
 namespace arris {
 
+// In the expressions of what a mirror shows: where rays begin, which is beyond the mirror's plane (beam_mirror.h).
+inline constexpr std::uint32_t kStartLeaf = ~std::uint32_t{0};
+
 struct MeshTriangle {
   std::array<Vec3d, 3> corners;
   std::uint32_t number = 0;  // for its owner
@@ -68,7 +71,8 @@ class BeamShape {
                                                               : nullptr;
   }
   [[nodiscard]] const ClosedMesh* volume(std::uint32_t leaf) const {
-    return leaf >= first_volume() ? volumes_[leaf - first_volume()] : nullptr;
+    return leaf >= first_volume() && leaf < leaf_count() ? volumes_[leaf - first_volume()]
+                                                         : nullptr;
   }
   // One of csg() that is not convex.
   [[nodiscard]] bool is_whole(std::uint32_t leaf) const {

@@ -39,7 +39,7 @@ class BeamTracer::Tracer {
  public:
   Tracer(const BeamTracer& shared, const Rect& tile,
          const std::function<void(const BeamPixel&)>& sink)
-      : shared_(shared), sink_(sink), lists_(tile) {}
+      : shared_(shared), sink_(sink), lists_(tile), mirror_lists_(tile) {}
 
   // Of at least a pixel.
   void visit(const Rect& rect, const std::vector<BeamPart>& above, double depth_end) {
@@ -49,7 +49,7 @@ class BeamTracer::Tracer {
     ++stats_.regions;
     LookTree tree = look(shared_.view_, list, rect, depth_end);
     const double next_end = std::min(depth_end, tree.depth_end);
-    if (tree.complete && add_shadows(tree, rect)) {
+    if (tree.complete && add_light(tree, rect)) {
       for (double y = rect.y0; y < rect.y1; ++y) {
         for (double x = rect.x0; x < rect.x1; ++x) add_pixel(tree, {x, y, x + 1, y + 1});
       }
@@ -72,7 +72,7 @@ class BeamTracer::Tracer {
     ++stats_.regions;
     LookTree tree = look(shared_.view_, list, rect, depth_end);
     const bool smallest = rect.width() <= least_region(parts);
-    const bool complete = (tree.complete || smallest) && add_shadows(tree, rect);
+    const bool complete = (tree.complete || smallest) && add_light(tree, rect);
     if (complete || smallest) {
       add_ends(tree, areas_of(tree, rect), parts);
       return;
@@ -94,8 +94,13 @@ class BeamTracer::Tracer {
                      : options.least_region;
   }
 
-  bool add_shadows(LookTree& tree, const Rect& rect) {
-    return shared_.shadows_.add_shadows(tree, rect, lists_, stats_.regions);
+  // Shadows, and what is seen in mirrors.
+  bool add_light(LookTree& tree, const Rect& rect) {
+    const MirrorLooker& mirrors = shared_.mirrors_;
+    const bool shadows =
+        shared_.shadows_.add_shadows(tree, rect, lists_, stats_.regions,
+                                     [&](const LookNode& node) { return mirrors.is_mirror(node); });
+    return mirrors.add_mirrors(tree, rect, mirror_lists_, stats_.regions) && shadows;
   }
 
   void add_pixel(const LookTree& tree, const Rect& pixel) {
@@ -113,7 +118,8 @@ class BeamTracer::Tracer {
 
   [[nodiscard]] bool is_certified() const {
     return std::ranges::all_of(surfaces_, [&](const PixelSurface& s) {
-      return s.hi - s.lo <= shared_.options_.tolerance;
+      return s.hi - s.lo <= shared_.options_.tolerance &&
+             !(s.mirror_open && s.hi > shared_.options_.tolerance);
     });
   }
 
@@ -134,6 +140,8 @@ class BeamTracer::Tracer {
       surface.estimate = end.estimate;
       surface.sample = end.sample;
       surface.sample_weight = end.estimate;
+      surface.mirror_open = node.mirror_open;
+      surface.mirror_number = node.mirrors;
       const bool is_curved = node.kind == LookNode::Kind::surface && !node.seen.surface.is_plane();
       if (is_curved && end.lo < 1) surface.samples = end.samples;
       add(surface);
@@ -186,12 +194,13 @@ class BeamTracer::Tracer {
   }
 
   // Surfaces are the same by it; ~0 three times: nothing is seen.
-  using Key = std::array<std::uint32_t, 5>;
+  using Key = std::array<std::uint32_t, 6>;
   static Key key_of(const PixelSurface& s) {
     constexpr std::uint32_t kNone = ~std::uint32_t{0};
-    if (!s.seen) return {kNone, kNone, kNone, s.lit, s.lit_known};
+    const std::uint32_t mirrors = s.mirror_number * 2 + (s.mirror_open ? 1 : 0);
+    if (!s.seen) return {kNone, kNone, kNone, s.lit, s.lit_known, mirrors};
     const std::uint32_t face = s.seen->face * 2 + (s.seen->entering ? 1 : 0);
-    return {s.seen->solid, s.seen->leaf, face, s.lit, s.lit_known};
+    return {s.seen->solid, s.seen->leaf, face, s.lit, s.lit_known, mirrors};
   }
   struct KeyHash {
     std::size_t operator()(const Key& key) const {
@@ -221,6 +230,9 @@ class BeamTracer::Tracer {
     added.seen = surface.seen;
     added.lit = surface.lit;
     added.lit_known = surface.lit_known;
+    added.mirror_open = surface.mirror_open;
+    added.mirror_number = surface.mirror_number;
+    if (surface.mirror_number != 0) added.mirrors = mirror_lists_.chain(surface.mirror_number);
     return added;
   }
 
@@ -262,6 +274,7 @@ class BeamTracer::Tracer {
   const BeamTracer& shared_;
   const std::function<void(const BeamPixel&)>& sink_;
   ShadowLists lists_;
+  MirrorLists mirror_lists_;
   std::vector<PixelSurface> surfaces_;
   std::unordered_map<Key, std::uint32_t, KeyHash> index_;  // of surfaces_, where they are many
   BeamStats stats_;
@@ -276,7 +289,8 @@ BeamTracer::BeamTracer(std::span<const BeamSolid> solids, const EyeRays& eye, in
       height_px_(height_px),
       options_(options),
       view_(solids, eye),
-      shadows_(solids, eye, lights) {}
+      shadows_(solids, eye, lights),
+      mirrors_(solids, eye, options.is_mirror) {}
 
 std::vector<BeamTile> BeamTracer::make_tiles() const {
   BeamTile whole;

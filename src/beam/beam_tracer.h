@@ -17,6 +17,7 @@
 #include <span>
 #include <vector>
 
+#include "beam/beam_mirror.h"
 #include "beam/beam_shadow.h"
 #include "beam/beam_view.h"
 #include "beam/region_look.h"
@@ -32,13 +33,16 @@ struct PixelSurface {
   Vec2d sample;                          // a point of the picture where it is seen, or may be
   double sample_weight = -1;             // the area that the sample stands for
   std::vector<AreaSample> samples;       // more of them, of curved surfaces
+  std::uint32_t mirror_number = 0;       // LookNode::mirrors
+  MirrorChain mirrors;                   // in which it is seen
+  bool mirror_open = false;              // a mirror, and what is seen in it is not known
 };
 
 struct BeamPixel {
   int x = 0, y = 0;
   std::span<const PixelSurface> surfaces;
   double coverage_lo = 0, coverage_hi = 1;  // of all surfaces together
-  bool certified = true;                    // no surface's bounds are wider than the tolerance
+  bool certified = true;  // no surface's bounds are wider than the tolerance, and no mirror is open
 };
 
 struct BeamStats {
@@ -56,6 +60,7 @@ struct BeamOptions {
   double least_open_region = 1.0 / 8;   // where a leaf that is not convex is among what may be seen
   int tile_px = 16;                // a power of two
   int threads = 0;                 // 0: all
+  IsMirror is_mirror;              // of flat surfaces; none: no mirrors are looked into
 };
 
 struct BeamTile {
@@ -88,6 +93,7 @@ class BeamTracer {
   BeamOptions options_;
   BeamView view_;
   ShadowLooker shadows_;
+  MirrorLooker mirrors_;
 };
 
 }  // namespace arris

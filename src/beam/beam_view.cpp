@@ -226,6 +226,7 @@ constexpr double kWindowMargin = 1e-7;
 LeafWindow BeamView::make_window(std::uint32_t solid, std::uint32_t leaf) const {
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   const LeafWindow everywhere{-kInfinity, -kInfinity, kInfinity, kInfinity};
+  if (leaf == kStartLeaf) return everywhere;
   const Box3d& box = shape(solid).leaf_box(leaf);
   if (!is_finite(box.low) || !is_finite(box.high)) return everywhere;
   const Projection& map = projections_[solid];
@@ -359,6 +360,17 @@ BeamView::BeamView(std::span<const BeamSolid> solids, const EyeRays& eye)
     }
   }
   turns_ = std::move(turns);
+}
+
+BeamView::BeamView(std::span<const BeamSolid> solids, const EyeRays& eye, LitPlane mirror)
+    : solids_(solids), is_eye_(true), mirror_(mirror), apex_(eye.position) {
+  const Mat3d picture = make_picture_map(eye);
+  for (const BeamSolid& solid : solids) {
+    frames_.push_back(make_eye_frame(eye, solid));
+    const Affine3d world_from_object = inverse(solid.object_from_world);
+    projections_.push_back({picture * world_from_object.linear,
+                            picture * (world_from_object.translation - eye.position)});
+  }
 }
 
 BeamView::BeamView(std::span<const BeamSolid> solids, const EyeRays& eye, LitPlane lit,

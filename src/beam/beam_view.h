@@ -102,6 +102,11 @@ class BeamView {
   BeamView(std::span<const BeamSolid> solids, const EyeRays& eye, LitPlane lit,
            const LightPlace& light, double reach);
 
+  // A mirrored eye's: surfaces are made whenever they are asked for. Rays begin at the mirror.
+  BeamView(std::span<const BeamSolid> solids, const EyeRays& eye, LitPlane mirror);
+
+  // Where rays begin: kStartLeaf. Precondition: the view is a mirrored eye's.
+  [[nodiscard]] const LitPlane& mirror() const { return *mirror_; }
   [[nodiscard]] const BeamShape& shape(std::uint32_t solid) const { return *solids_[solid].shape; }
   // Is the origin of all rays inside the volume? A directional light is outside of all.
   [[nodiscard]] bool starts_in_volume(std::uint32_t solid, std::uint32_t leaf) const;
@@ -113,7 +118,7 @@ class BeamView {
   [[nodiscard]] bool direction_fixed() const { return frames_[0].direction_fixed; }
   // Of a leaf in the picture; rays outside miss it.
   [[nodiscard]] LeafWindow window(std::uint32_t solid, std::uint32_t leaf) const {
-    return windows_.empty() ? make_window(solid, leaf) : windows_[solid][leaf];
+    return windows_.empty() || leaf == kStartLeaf ? make_window(solid, leaf) : windows_[solid][leaf];
   }
   // Holds what the rays through `rect` pass between two depths, in the solid's space. Precondition: not direction_fixed().
   [[nodiscard]] SpaceCell cell(std::uint32_t solid, const Rect& rect, Interval depths) const;
@@ -144,6 +149,7 @@ class BeamView {
 
   std::span<const BeamSolid> solids_;
   bool is_eye_ = false;
+  std::optional<LitPlane> mirror_;
   std::optional<Vec3d> apex_;  // in the world; nothing: parallel rays
   std::vector<ViewFrame> frames_;
   std::vector<Projection> projections_;  // by solid, from its own space

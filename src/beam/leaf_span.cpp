@@ -35,6 +35,7 @@ class SpanMaker {
       : view_(view), place_(place), depth_end_(depth_end), oracle_(oracle) {}
 
   std::optional<LeafSpan> make() {
+    if (place_.leaf == kStartLeaf) return make_plane_span(view_, view_.mirror(), oracle_.rect());
     const BeamShape& shape = view_.shape(place_.solid);
     if (const Facet* facet = shape.facet(place_.leaf)) return make_facet(*facet);
     if (shape.volume(place_.leaf) != nullptr) return make_volume();
@@ -145,6 +146,12 @@ class SpanMaker {
     if (ref.flipped) {
       height = -height;
       slopes = -slopes;
+    }
+    if (height == Sign::unknown && !view_.direction_fixed()) {
+      // The eye is in the plane: rays are on one side of it, for good.
+      if (slopes.lo >= 0) return false;
+      span_.start_open = span_.start_open || slopes.hi > 0;
+      return true;
     }
     if (height == Sign::unknown) {
       span_.start_open = true;
@@ -401,6 +408,16 @@ Order order_of_plane_and_root(const BeamView& view, const SpanEnd& plane, const 
 
 }  // namespace
 
+LeafSpan make_plane_span(const BeamView& view, const LitPlane& plane, const Rect& rect) {
+  const PlaneForm& form = view.plane(plane.solid, plane.plane);
+  LeafSpan span;
+  span.enter = quotient(absolute(range_over(form.height, rect)), absolute(range_over(form.slope, rect)));
+  span.leave = {kInfinity, kInfinity};
+  span.certain = true;
+  span.entering.push_back({span.enter, {plane.solid, plane.plane, Root::none}, 0});
+  return span;
+}
+
 std::optional<LeafSpan> make_span(const BeamView& view, LeafPlace place, double depth_end,
                                   const SignOracle& oracle) {
   return SpanMaker(view, place, depth_end, oracle).make();
@@ -519,8 +536,12 @@ Met decide_met(const BeamView& view, const LeafSpan& span, LeafPlace place, Sign
     const ConvexLeaf& leaf = *view.shape(place.solid).convex(place.leaf);
     for (const PlaneRef& ref : leaf.planes) {
       const BeamSurface s{place.solid, ref.plane, Root::none};
-      if (oracle.ask(key_of(Of::height, s), view.plane(s.solid, s.index).height) == Sign::unknown)
-        return Met::unknown;
+      const PlaneForm& form = view.plane(s.solid, s.index);
+      const bool eye_in_plane = !view.direction_fixed() &&
+                                oracle.find(key_of(Of::height, s), form.height) == Sign::unknown;
+      const Sign sign = eye_in_plane ? oracle.ask(key_of(Of::slope, s), form.slope)
+                                     : oracle.ask(key_of(Of::height, s), form.height);
+      if (sign == Sign::unknown) return Met::unknown;
     }
     if (leaf.quadric) {
       const BeamSurface s{place.solid, *leaf.quadric, Root::nearer};

@@ -5,6 +5,7 @@
 //            Of any other leaf it is known where slices of the beam are certainly outside or inside, no more: its
 //            surface is one, whatever face of it a ray meets, and its order before others only where bounds are apart.
 //            A facet of a mesh (beam_shape.h) is entered at its plane, for good.
+// Limits     an eye that is in a plane but for rounding counts as in it
 // Guarantee  along every ray through the rectangle for which the oracle's assumptions hold, the leaf is entered and
 //            left within the bounds or missed; nothing is missed if `certain` (tests/beam/region_look_test.cpp)
 #pragma once
@@ -147,6 +148,9 @@ struct LeafPlace {
 // The depths in which we are interested end at `depth_end`. Nothing: no ray meets the leaf before it.
 std::optional<LeafSpan> make_span(const BeamView& view, LeafPlace place, double depth_end,
                                   const SignOracle& oracle);
+
+// Of all that is beyond a plane that every ray meets.
+LeafSpan make_plane_span(const BeamView& view, const LitPlane& plane, const Rect& rect);
 
 enum class Met : std::uint8_t { no, yes, unknown };
 

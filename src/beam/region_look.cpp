@@ -184,7 +184,7 @@ class Looker {
       for (std::uint32_t slot = 0; slot < leaves.size(); ++slot) {
         const LeafPlace place{parts_[p].solid, leaves[slot]};
         first_slots_.push_back(
-            {p, slot, place, is_goal ? make_goal_span() : spans[first_slots_.size()], is_goal});
+            {p, slot, place, is_goal ? make_plane_span(view_, *options_.only, rect_) : spans[first_slots_.size()], is_goal});
       }
     }
   }
@@ -198,24 +198,10 @@ class Looker {
     }();
     return {plane.solid, kGoal};
   }
-  // The plane that the light is to reach is entered for good.
-  [[nodiscard]] LeafSpan make_goal_span() const {
-    const PlaneForm& form = view_.plane(options_.only->solid, options_.only->plane);
-    const Interval height = absolute(range_over(form.height, rect_));
-    const Interval slope = absolute(range_over(form.slope, rect_));
-    LeafSpan span;
-    span.enter.lo = slope.hi > 0 ? std::max(0.0, next_down(height.lo / slope.hi)) : 0;
-    span.enter.hi = slope.lo > 0 ? next_up(height.hi / slope.lo) : kInfinity;
-    span.leave = {kInfinity, kInfinity};
-    span.certain = true;
-    const BeamSurface surface{options_.only->solid, options_.only->plane, BeamSurface::Root::none};
-    span.entering.push_back({span.enter, surface, 0});
-    return span;
-  }
-
   // Does the assumption change what is known of the leaf's span?
   [[nodiscard]] bool concerns(const Assumption& assumption, const LeafPlace& place) const {
     if (assumption.key.solid_a != place.solid) return false;
+    if (place.leaf == kStartLeaf) return false;
     const BeamShape& shape = view_.shape(place.solid);
     if (const Facet* facet = shape.facet(place.leaf)) {
       return assumption.key.of == SignKey::Of::side &&
@@ -433,6 +419,7 @@ class Looker {
       if (met == Met::no) continue;
       const bool starts = s.span->starts_inside || s.span->enter.hi < window_.lo;
       inside[i] = starts ? 1 : 0;
+      if (starts && s.span->leave.lo == kInfinity) continue;  // for good
       events.push_back({i, !starts, starts ? s.span->leave : s.span->enter, std::nullopt});
     }
     std::vector<bool> values = eval_parts(inside);
@@ -474,8 +461,9 @@ class Looker {
   void advance(std::vector<Event>& events, const std::vector<std::size_t>& done) {
     for (const std::size_t at : std::ranges::reverse_view(done)) {
       Event& event = events[at];
-      if (event.entering) {
-        event = {event.index, false, window_slots_[event.index]->span->leave, std::nullopt};
+      const Interval leave = window_slots_[event.index]->span->leave;
+      if (event.entering && leave.lo < kInfinity) {
+        event = {event.index, false, leave, std::nullopt};
       } else {
         events.erase(events.begin() + std::ptrdiff_t(at));
       }

@@ -48,6 +48,8 @@ struct LookNode {
   std::uint32_t first = 0, count = 0;        // unknown: of LookTree::candidates
   std::uint32_t lit = 0;                     // surface: which lights reach it, see beam_shadow.h
   std::uint32_t lit_known = 0;
+  std::uint32_t mirrors = 0;  // surface or nothing: in which it is seen, see beam_mirror.h; 0: none
+  bool mirror_open = false;   // surface: a mirror in which something unknown is seen
 };
 
 struct LookTree {
@@ -65,6 +67,24 @@ struct LookOptions {
   // That are put in order along the ray. Of more, all is unknown; of many more, without candidates.
   std::uint32_t most_leaves = 8;
 };
+
+// `by` in the place of a node, with make_end(end) for each of its ends. Those of its `unknown` ends lose their candidates.
+template <class MakeEnd>
+void replace_node(LookTree& tree, std::uint32_t at, const LookTree& by, const MakeEnd& make_end) {
+  const auto base = std::uint32_t(tree.nodes.size()) - 1;
+  const auto place = [&](std::uint32_t i) { return i == 0 ? at : base + i; };
+  tree.nodes.resize(tree.nodes.size() + by.nodes.size() - 1);
+  for (std::uint32_t i = 0; i < by.nodes.size(); ++i) {
+    LookNode node = by.nodes[i];
+    if (node.kind == LookNode::Kind::sign) {
+      node.negative = place(node.negative);
+      node.positive = place(node.positive);
+    } else {
+      node = make_end(node);
+    }
+    tree.nodes[place(i)] = node;
+  }
+}
 
 // What a beam may meet.
 struct BeamList {

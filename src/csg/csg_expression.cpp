@@ -192,6 +192,19 @@ void CsgExpression::number_leaves() {
   }
 }
 
+CsgExpression CsgExpression::intersected_with(std::uint32_t leaf) const {
+  CsgExpression both;
+  both.decided_ = decided_;
+  for (CsgStep step : steps_) {
+    if (is_of_leaf(step)) step.value = leaves_[step.value];
+    both.steps_.push_back(step);
+  }
+  both.steps_.push_back({Kind::leaf, leaf});
+  both.steps_.push_back({Kind::intersect, 2});
+  both.number_leaves();
+  return both;
+}
+
 CsgExpression CsgExpression::with_parities(
     const std::map<std::uint32_t, std::vector<std::uint32_t>>& volumes) const {
   CsgExpression replaced;

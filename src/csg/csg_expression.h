@@ -48,6 +48,8 @@ class CsgExpression {
   // them.
   [[nodiscard]] CsgExpression with_parities(
       const std::map<std::uint32_t, std::vector<std::uint32_t>>& volumes) const;
+  // Precondition: not decided.
+  [[nodiscard]] CsgExpression intersected_with(std::uint32_t leaf) const;
   // `covers` by index of leaves().
   [[nodiscard]] CsgExpression prune(std::span<const Cover> covers) const;
   // `boxes` by index of leaves(). Contains the solid; infinite where a complement alone bounds it.

@@ -73,32 +73,46 @@ std::uint32_t sample_count(const Job& job, double share) {
 }
 
 // Direct light of a surface: of the point that stands for it, or of several where it is curved.
-Rgb shade_directly(const Job& job, const PixelSurface& surface, const KnownSight& sight,
+Rgb shade_directly(const Job& job, const PixelSurface& surface, const MirroredSight& first,
                    PathRays& rays) {
-  if (surface.samples.size() < 2) {
-    return direct_light(job.scene.scene(), job.emitters, sight, surface, rays);
-  }
+  if (int(surface.mirrors.size()) >= std::max(1, job.settings.max_depth)) return {};
+  const auto shade_at = [&](const MirroredSight& at) {
+    return at.throughput *
+           direct_light(job.scene.scene(), job.emitters, at.sight, surface, rays);
+  };
+  if (surface.samples.size() < 2) return shade_at(first);
   Rgb sum;
   double weight = 0;
   for (const AreaSample& sample : surface.samples) {
-    const KnownSight other = make_sight(job.scene, surface, sample.at);
-    sum += direct_light(job.scene.scene(), job.emitters, other, surface, rays) * float(sample.weight);
+    sum += shade_at(make_sight(job.scene, surface, sample.at)) * float(sample.weight);
     weight += sample.weight;
   }
   return sum * float(1 / weight);
 }
 
+// Where a path of the surface starts: anywhere in the pixel that it fills, else at one of its samples.
+Vec2d path_start(const BeamPixel& pixel, const PixelSurface& surface, std::uint32_t i,
+                 Sampler& sampler) {
+  const Vec2f u = sampler.next_2d();
+  if (surface.lo > 1 - 1e-9) return {pixel.x + double(u.x), pixel.y + double(u.y)};
+  if (surface.samples.empty()) return surface.sample;
+  return surface.samples[i % surface.samples.size()].at;
+}
+
 Rgb shade(const Job& job, const BeamPixel& pixel, const PixelSurface& surface,
           std::uint32_t& sample, PathRays& rays) {
-  const KnownSight sight = make_sight(job.scene, surface, surface.sample);
-  const Rgb direct = shade_directly(job, surface, sight, rays);
+  const Rgb direct =
+      shade_directly(job, surface, make_sight(job.scene, surface, surface.sample), rays);
   if (!job.needs_paths) return direct;
   Rgb other;
   const std::uint32_t count = sample_count(job, surface.estimate);
   for (std::uint32_t i = 0; i < count; ++i) {
-    const Sampler sampler(job.options.seed, std::uint32_t(pixel.x), std::uint32_t(pixel.y),
-                          job.options.samples.first + sample++);
-    other += trace_known_sight(job.scene.scene(), job.settings, sight, sampler, rays).radiance;
+    Sampler sampler(job.options.seed, std::uint32_t(pixel.x), std::uint32_t(pixel.y),
+                    job.options.samples.first + sample++);
+    const Vec2d at = path_start(pixel, surface, i, sampler);
+    const MirroredSight start = make_sight(job.scene, surface, at);
+    other += start.throughput *
+             trace_known_sight(job.scene.scene(), job.settings, start.sight, sampler, rays).radiance;
   }
   return direct + other * (1.0F / float(count));
 }
@@ -186,7 +200,10 @@ class BeamRenderer final : public Renderer {
     }
     // Four rays a region don't get better by smaller ones as bounds do.
     const double least = rule_ == BeamRule::corners ? 1.0 / 8 : BeamOptions{}.least_region;
-    const BeamOptions beam{.least_region = least, .threads = options.threads};
+    BeamOptions beam{.least_region = least, .threads = options.threads, .is_mirror = {}};
+    if (image.max_depth > 0) {
+      beam.is_mirror = [&](const SeenSurface& seen) { return is_mirror(beams, seen); };
+    }
     const std::vector<LightPlace> lights = make_light_places(scene.geometry(), job.emitters);
     const auto render_with = [&](const auto& tracer) { return render_tiles(job, tracer, layers); };
     const std::vector<TileCounts> counts =

@@ -102,6 +102,16 @@ SurfaceHit BeamScene::hit_at(const SeenSurface& seen, const Ray& world) const {
   return objects_[seen.solid] == nullptr ? mesh_hit(seen, world) : csg_hit(seen, world);
 }
 
+MaterialId BeamScene::material_of(const SeenSurface& seen) const {
+  const BeamShape& shape = *solids_[seen.solid].shape;
+  const Facet* facet = shape.facet(seen.leaf);
+  if (objects_[seen.solid] != nullptr) {
+    return shape.csg().leaf(facet != nullptr ? facet->source : seen.leaf).material;
+  }
+  const GeometryRecord& record = scene_.geometry().embree.records()[records_[seen.solid]];
+  return arris::material_of(record, facet->triangle);
+}
+
 bool BeamScene::is_curved(const SeenSurface& seen) const {
   if (objects_[seen.solid] != nullptr) {
     return seen.face == kAnyFace || !solids_[seen.solid].shape->is_flat(seen.leaf, seen.face);

@@ -28,6 +28,7 @@ class BeamScene {
 
   // Where the ray meets the surface's plane or quadric; of a surface seen as a whole the nearest point.
   [[nodiscard]] SurfaceHit hit_at(const SeenSurface& seen, const Ray& world) const;
+  [[nodiscard]] MaterialId material_of(const SeenSurface& seen) const;
   // Its shading varies from point to point.
   [[nodiscard]] bool is_curved(const SeenSurface& seen) const;
 

@@ -21,14 +21,45 @@ std::vector<Emitter> point_like_emitters(const LightSet& lights) {
   return emitters;
 }
 
-KnownSight make_sight(const BeamScene& scene, const PixelSurface& surface, Vec2d at) {
+bool is_mirror(const BeamScene& scene, const SeenSurface& seen) {
+  const PreparedMaterial& material =
+      scene.scene().geometry().materials[scene.material_of(seen).index];
+  if (material.textured || material.translucent || material.emissive) return false;
+  const Bsdf bsdf = make_bsdf(material.factors, Vec3f(0, 0, 1), MediumSide::outside);
+  return is_delta_only(bsdf) && material.factors.transmission == 0;
+}
+
+namespace {
+
+Bsdf bsdf_at(const SurfaceHit& hit, const SurfaceMaterial& material, const Frame& frame,
+             Vec3f direction) {
+  return make_bsdf(material, local_from_world(frame, -direction),
+                   hit.side == Side::inside ? MediumSide::inside : MediumSide::outside);
+}
+
+}  // namespace
+
+MirroredSight make_sight(const BeamScene& scene, const PixelSurface& surface, Vec2d at) {
   const Ray through = ray_through(scene.eye(), at);
-  const Ray ray{through.origin, normalize(through.direction)};
-  KnownSight sight;
+  Ray ray{through.origin, normalize(through.direction)};
+  MirroredSight out;
+  for (const SeenSurface& mirror : surface.mirrors) {
+    const SurfaceHit hit = scene.hit_at(mirror, ray);
+    std::optional<SurfaceMaterial> storage;
+    const SurfaceMaterial& material = material_at(scene.scene(), hit, storage);
+    const Frame frame = shading_frame(scene.scene(), hit, material);
+    const auto sample =
+        sample_bsdf(bsdf_at(hit, material, frame, Vec3f(ray.direction)), 0.5F, {0.5F, 0.5F});
+    out.throughput = sample ? out.throughput * sample->weight : Rgb(0.0F);
+    const Vec3d n(hit.geometric_normal);
+    ray = {Vec3d(hit.position), ray.direction - n * (2 * dot(n, ray.direction))};
+  }
+  KnownSight& sight = out.sight;
   sight.ray.origin = Vec3f(ray.origin);
   sight.ray.direction = Vec3f(ray.direction);
+  sight.mirrors = int(surface.mirrors.size());
   if (surface.seen) sight.hit = scene.hit_at(*surface.seen, ray);
-  return sight;
+  return out;
 }
 
 Rgb direct_light(const PreparedScene& scene, const std::vector<Emitter>& emitters,
@@ -39,8 +70,7 @@ Rgb direct_light(const PreparedScene& scene, const std::vector<Emitter>& emitter
   std::optional<SurfaceMaterial> storage;
   const SurfaceMaterial& material = material_at(scene, hit, storage);
   const Frame frame = shading_frame(scene, hit, material);
-  const Bsdf bsdf = make_bsdf(material, local_from_world(frame, -sight.ray.direction),
-                              hit.side == Side::inside ? MediumSide::inside : MediumSide::outside);
+  const Bsdf bsdf = bsdf_at(hit, material, frame, sight.ray.direction);
   const LightSet& lights = scene.geometry().lights;
   for (std::size_t i = 0; i < emitters.size(); ++i) {
     const LightSample light = sample_emitter(lights, emitters[i], hit.position, {});

@@ -15,7 +15,15 @@ namespace arris {
 // The emitters without extent, in this order in the bits of PixelSurface::lit.
 std::vector<Emitter> point_like_emitters(const LightSet& lights);
 
-KnownSight make_sight(const BeamScene& scene, const PixelSurface& surface, Vec2d at);
+// By way of the surface's mirrors.
+struct MirroredSight {
+  KnownSight sight;
+  Rgb throughput{1, 1, 1};  // of the mirrors
+};
+MirroredSight make_sight(const BeamScene& scene, const PixelSurface& surface, Vec2d at);
+
+// Does the surface nothing but reflect like a mirror?
+bool is_mirror(const BeamScene& scene, const SeenSurface& seen);
 
 Rgb direct_light(const PreparedScene& scene, const std::vector<Emitter>& emitters,
                  const KnownSight& sight, const PixelSurface& surface, PathRays& rays);

@@ -244,8 +244,9 @@ PathSample trace(Path& path) {
   const PathSettings& settings = path.settings;
   PathRays& rays = path.rays;
   PathSample result;
-  for (int depth = 0; path.passes < kMaxPasses;) {
-    const bool is_known = path.known != nullptr && depth == 0 && path.passes == 0;
+  const int first_depth = path.known != nullptr ? path.known->mirrors : 0;
+  for (int depth = first_depth; path.passes < kMaxPasses;) {
+    const bool is_known = path.known != nullptr && path.passes == 0;
     const std::optional<SurfaceHit> hit = is_known ? path.known->hit : scene.intersect(path.ray);
     rays.total += is_known ? 0 : 1;
     path.add_area_lights(hit ? hit->t : std::numeric_limits<float>::infinity());
@@ -304,6 +305,7 @@ PathSample trace_known_sight(const PreparedScene& scene, const PathSettings& set
                              const KnownSight& sight, Sampler sampler, PathRays& rays) {
   Path path{scene, scene.geometry().lights, settings, sampler, rays, sight.ray};
   path.known = &sight;
+  if (sight.mirrors > 0) path.kind = RayKind::scattered;
   return trace(path);
 }
 

@@ -48,6 +48,7 @@ PathSample trace_path(const PreparedScene& scene, const PathSettings& settings, 
 struct KnownSight {
   TraceRay ray;
   std::optional<SurfaceHit> hit;  // nothing: it leaves the scene
+  int mirrors = 0;                // it has left so many mirrors before, which counts as depth
 };
 PathSample trace_known_sight(const PreparedScene& scene, const PathSettings& settings,
                              const KnownSight& sight, Sampler sampler, PathRays& rays);

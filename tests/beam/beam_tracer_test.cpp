@@ -158,7 +158,7 @@ TEST(beam_tracer, same_pixels_at_any_number_of_threads) {
   scene.add(random_convex_tree(random, 2));
   scene.eye = look_at({4, 3, 3}, {0, 0, 0}, 40, 40, 40);
   const auto sum = [&](int threads) {
-    const BeamTracer tracer(scene.placed, scene.eye, 40, 40, {.threads = threads});
+    const BeamTracer tracer(scene.placed, scene.eye, 40, 40, {.threads = threads, .is_mirror = {}});
     std::vector<double> values;
     for (const BeamTile& tile : tracer.make_tiles()) {
       tracer.trace_tile(tile, [&](const BeamPixel& pixel) {

@@ -72,6 +72,32 @@ TEST(beam_renderer, other_light_is_path_traced) {
   EXPECT_NEAR(mean_of(beam), mean_of(path), 0.01 * mean_of(path));
 }
 
+// A floor of polished metal below the slab, which shows its underside and the lamp's light on it.
+TEST(beam_renderer, flat_mirrors_agree_with_the_path_tracer) {
+  Scene scene = beam_scene();
+  Material mirror;
+  mirror.base_color = {0.9F, 0.8F, 0.7F};
+  mirror.metallic = 1;
+  mirror.roughness = 0;
+  scene.materials.push_back(mirror);
+  CsgTree floor = one_leaf(CsgBox{{-8, -8, -3}, {8, 8, -2}});
+  floor.leaves[0].material = MaterialId{2};
+  scene.csg_trees.push_back(floor);
+  Object object;
+  object.name = "floor";
+  object.csg = CsgId{2};
+  scene.objects.push_back(object);
+  scene.lights.emplace_back(PointLight{{2, -3, -1}, {20, 20, 20}});
+  scene.camera->position = {0.5, -6, 1.5};
+  scene.image.max_depth = 3;
+  const auto renderer = make_beam_renderer();
+  const RenderResult beam = render(scene, *renderer, 64, {"uncertified"});
+  const Image path = render(scene, *make_path_renderer(), 1024).picture.color;
+  EXPECT_LT(rmse(beam.picture.color, path), 0.03);
+  EXPECT_NEAR(mean_of(beam.picture.color), mean_of(path), 0.01 * mean_of(path));
+  EXPECT_LT(mean_of(beam.picture.layers[0].image), 0.05);
+}
+
 TEST(beam_renderer, fills_its_layers_and_counts) {
   const Scene scene = beam_scene();
   const auto renderer = make_beam_renderer();
@@ -96,19 +122,16 @@ TEST(beam_renderer, fills_its_layers_and_counts) {
 
 TEST(beam_renderer, says_what_it_cannot_take) {
   Scene scene = beam_scene();
-  EXPECT_TRUE(beam_problems(scene).empty());
   add_object(scene, make_box_mesh(Vec3d(1)), make_lambert(0.5F));
-  scene.csg_trees.push_back(one_leaf(CsgTorus{1, 0.2}));
-  Object ring;
-  ring.name = "ring";
-  ring.csg = CsgId{2};
-  scene.objects.push_back(ring);
+  scene.objects.back().name = "box";
+  EXPECT_TRUE(beam_problems(scene).empty());
+  scene.rounding = RoundingSettings{};
+  scene.rounding->method = RoundMethod::mesh;
+  EXPECT_TRUE(beam_problems(scene).empty());
+  scene.rounding->method = RoundMethod::exact;  // CSG solids are sharp anyway
   const std::vector<std::string> problems = beam_problems(scene);
-  ASSERT_EQ(problems.size(), 2U);
-  EXPECT_NE(problems[0].find("is a mesh"), std::string::npos);
-  EXPECT_EQ(
-      problems[1],
-      "object \"ring\" has a torus, which the beam renderer can't bound; use --integrator path");
+  ASSERT_EQ(problems.size(), 1U);
+  EXPECT_NE(problems[0].find("\"box\" is to have rounded edges"), std::string::npos);
 }
 
 }  // namespace
