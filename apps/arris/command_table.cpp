@@ -78,11 +78,14 @@ CommandRow render_row() {
           "only these samples of the sequence; arris merge joins such .exr parts, which hold their "
           "exact sums besides, to the bytes of the whole"},
          {"--integrator", "path|beam",
-          "path: path tracing; beam: CSG solids with certain bounds on what each pixel shows "
-          "(default: path)"},
+          "path: path tracing; beam: nothing that is small is lost, with certain bounds on what each "
+          "pixel shows (default: path)"},
          {"--beam-rule", "certified|corners",
           "how beams find uniform regions; certified: by bounds that hold; corners: by four rays, "
-          "as in the paper of 1996, for comparison (default: certified)"}}},
+          "as in the paper of 1996, for comparison (default: certified)"},
+         {"--light-beams", "N",
+          "beam: each area light is N x N point lights, whose shadows have no noise; 0: it is sampled "
+          "(default: 0)"}}},
        input_group(),
        camera_group(),
        {"Staging",

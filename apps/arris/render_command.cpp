@@ -157,7 +157,7 @@ int run_render(const Arguments& arguments) {
   job.options.stop = &stop;
   job.options.on_progress = [&](const Progress& progress) { console.show_progress(progress); };
   const JobResult result =
-      run_job(*make_renderer(request.integrator, request.beam_rule), *prepared, job);
+      run_job(*make_renderer(request.integrator, request.beam), *prepared, job);
   console.end_progress();
   stats.rays = result.rays;
   stats.beam = result.beam;

@@ -84,14 +84,20 @@ Integrator parse_integrator(const Arguments& arguments) {
   return kIntegrators[parse_choice(*given, {"path", "beam"})];
 }
 
-BeamRule parse_beam_rule(const Arguments& arguments, Integrator integrator) {
-  const auto given = find_given(arguments, "--beam-rule");
-  if (!given) return BeamRule::certified;
-  if (integrator != Integrator::beam) {
-    throw Error(Error::Kind::input, "--beam-rule", "needs --integrator beam");
+BeamSettings parse_beam_settings(const Arguments& arguments, Integrator integrator) {
+  for (const char* option : {"--beam-rule", "--light-beams"}) {
+    if (!arguments.has(option) || integrator == Integrator::beam) continue;
+    throw Error(Error::Kind::input, option, "needs --integrator beam");
   }
-  constexpr BeamRule kRules[] = {BeamRule::certified, BeamRule::corners};
-  return kRules[parse_choice(*given, {"certified", "corners"})];
+  BeamSettings settings;
+  if (const auto given = find_given(arguments, "--beam-rule")) {
+    constexpr BeamRule kRules[] = {BeamRule::certified, BeamRule::corners};
+    settings.rule = kRules[parse_choice(*given, {"certified", "corners"})];
+  }
+  if (const auto given = find_given(arguments, "--light-beams")) {
+    settings.light_beams = int(parse_count(*given, 0, kMostLightBeams));
+  }
+  return settings;
 }
 
 // The beam renderer goes through the picture once.
@@ -159,8 +165,8 @@ void check_files(const RenderRequest& request) {
 
 }  // namespace
 
-std::unique_ptr<Renderer> make_renderer(Integrator integrator, BeamRule rule) {
-  return integrator == Integrator::beam ? make_beam_renderer(rule) : make_path_renderer();
+std::unique_ptr<Renderer> make_renderer(Integrator integrator, const BeamSettings& beam) {
+  return integrator == Integrator::beam ? make_beam_renderer(beam) : make_path_renderer();
 }
 const char* name_of(Integrator integrator) {
   return integrator == Integrator::beam ? "beam" : "path";
@@ -172,7 +178,7 @@ RenderRequest make_render_request(const Arguments& arguments) {
   request.load = load_options_of(arguments);
   request.output = parse_output(arguments);
   request.integrator = parse_integrator(arguments);
-  request.beam_rule = parse_beam_rule(arguments, request.integrator);
+  request.beam = parse_beam_settings(arguments, request.integrator);
   if (request.integrator == Integrator::beam) check_beam_options(arguments);
   request.aovs = parse_aovs(arguments, request.integrator);
   request.stage = make_stage_options(arguments);

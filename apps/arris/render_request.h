@@ -24,7 +24,7 @@ struct RenderRequest {
   std::optional<std::string> stats;
   std::optional<std::filesystem::path> checkpoint;
   Integrator integrator = Integrator::path;
-  BeamRule beam_rule = BeamRule::certified;
+  BeamSettings beam;
   StageOptions stage;
   std::optional<SampleRange> samples;  // empty: from 0 to the scene's
   bool is_part = false;                // to be joined with others
@@ -34,7 +34,7 @@ struct RenderRequest {
   std::vector<std::string> aovs;
 };
 
-std::unique_ptr<Renderer> make_renderer(Integrator integrator, BeamRule rule = BeamRule::certified);
+std::unique_ptr<Renderer> make_renderer(Integrator integrator, const BeamSettings& beam = {});
 const char* name_of(Integrator integrator);
 
 RenderRequest make_render_request(const Arguments& arguments);

@@ -87,7 +87,7 @@ Image make_truth(const PreparedScene& scene, const std::vector<SmallObject>& obj
     }
   }
   const CameraRays camera = make_camera_rays(*scene.scene().camera, settings);
-  const std::vector<Emitter> emitters = point_like_emitters(scene.geometry().lights);
+  const std::vector<BeamLight> lights = make_beam_lights(scene.geometry().lights, 0);
   parallel_for(wanted.size(), {.grain = 256, .threads = threads}, [&](std::size_t i) {
     if (!wanted[i]) return;
     const int x = int(i % std::size_t(settings.width_px)),
@@ -101,7 +101,7 @@ Image make_truth(const PreparedScene& scene, const std::vector<SmallObject>& obj
       if (!sight.hit) continue;
       std::optional<SurfaceMaterial> storage;
       sum += material_at(scene, *sight.hit, storage).emission +
-             direct_light(scene, emitters, sight, {}, rays);
+             direct_light(scene, lights, sight, {}, rays);
     }
     for (int c = 0; c < 3; ++c) truth.at(x, y, c) = sum[c] / (kGrid * kGrid);
   });
@@ -169,7 +169,7 @@ void print_scene(const BeamTableSettings& settings, const std::string& name) {
   const Image truth = make_truth(*prepared, objects, settings.threads);
   std::vector<Row> rows;
   rows.push_back({"beam certified", make_beam_renderer(), 1});
-  if (settings.corners) rows.push_back({"beam corners", make_beam_renderer(BeamRule::corners), 1});
+  if (settings.corners) rows.push_back({"beam corners", make_beam_renderer({.rule = BeamRule::corners}), 1});
   for (const int samples : settings.path_samples) {
     rows.push_back({fmt::format("path {}", samples), make_path_renderer(), std::uint32_t(samples)});
   }

@@ -121,9 +121,15 @@ std::unique_ptr<Renderer> make_path_renderer();
 
 // certified: bounds decide; corners: four rays decide, as in the paper, for comparison.
 enum class BeamRule { certified, corners };
-// CSG solids with the coverage of every surface in every pixel between certain bounds (docs/beam.md). Every pixel is
-// its square, whatever the image's filter. Precondition: beam_problems() is empty.
-std::unique_ptr<Renderer> make_beam_renderer(BeamRule rule = BeamRule::certified);
+struct BeamSettings {
+  BeamRule rule = BeamRule::certified;
+  // Each area light is so many point lights a side, with shadows as sharp as those of point lights; 0: it is sampled.
+  int light_beams = 0;
+};
+inline constexpr int kMostLightBeams = 16;
+// The coverage of every surface in every pixel between certain bounds (docs/beam.md). Every pixel is its square,
+// whatever the image's filter. Precondition: beam_problems() is empty.
+std::unique_ptr<Renderer> make_beam_renderer(const BeamSettings& settings = {});
 // What of a scene the beam renderer can't take, one line each with a remedy.
 std::vector<std::string> beam_problems(const Scene& scene);
 

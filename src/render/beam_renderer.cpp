@@ -26,8 +26,9 @@ struct Job {
   const BeamScene& scene;
   const RenderOptions& options;
   PathSettings settings;
-  std::vector<Emitter> emitters;  // point-like
-  bool needs_paths = false;       // there is other light
+  std::vector<BeamLight> lights;
+  bool knows_area_lights = false;  // they are among `lights`
+  bool needs_paths = false;        // there is other light
 };
 
 EyeRays make_eye(const Scene& scene) {
@@ -35,35 +36,31 @@ EyeRays make_eye(const Scene& scene) {
   return {Vec3d(rays.position), rays.corner, rays.step_x, rays.step_y};
 }
 
-// In the order of `emitters`. None where translucent surfaces make shadows of more than two kinds.
+// In the order of `lights`. None where translucent surfaces make shadows of more than two kinds.
 std::vector<LightPlace> make_light_places(const SceneGeometry& geometry,
-                                          const std::vector<Emitter>& emitters) {
+                                          const std::vector<BeamLight>& lights) {
   std::vector<LightPlace> places;
   if (geometry.any_translucent) return places;
-  for (const Emitter& e : emitters) {
-    LightPlace place;
-    if (e.kind == EmitterKind::directional) {
-      place.is_directional = true;
-      place.direction = -Vec3d(geometry.lights.directionals[e.index].wi);
-    } else if (e.kind == EmitterKind::point) {
-      place.position = Vec3d(geometry.lights.points[e.index].position);
-    } else {
-      place.position = Vec3d(geometry.lights.spots[e.index].position);
-    }
-    places.push_back(place);
-  }
+  for (const BeamLight& light : lights) places.push_back(place_of(geometry.lights, light));
   return places;
 }
 
-// Anything that lights a surface besides point-like lights, or shows behind it.
+// Anything that lights a surface besides the lights that are added up, or shows behind it.
 bool needs_paths(const SceneGeometry& geometry, const PathSettings& settings,
-                 std::size_t point_like) {
-  const bool other_lights = geometry.lights.emitters.size() > point_like ||
-                            geometry.lights.environment.kind != EnvironmentKind::constant ||
-                            max_component(geometry.lights.environment.constant) > 0;
+                 bool knows_area_lights) {
+  const LightSet& lights = geometry.lights;
+  const bool other_lights = std::ranges::any_of(lights.emitters, [&](const Emitter& e) {
+    if (e.kind != EmitterKind::rectangle) {
+      return e.kind == EmitterKind::triangle || e.kind == EmitterKind::environment ||
+             e.kind == EmitterKind::sun;
+    }
+    return !knows_area_lights || lights.rectangles[e.index].visible_to_camera;
+  });
+  const bool backdrop = lights.environment.kind != EnvironmentKind::constant ||
+                        max_component(lights.environment.constant) > 0;
   const bool emits =
       std::ranges::any_of(geometry.materials, [](const PreparedMaterial& m) { return m.emissive; });
-  return other_lights || emits || geometry.any_translucent || settings.max_depth > 1;
+  return other_lights || backdrop || emits || geometry.any_translucent || settings.max_depth > 1;
 }
 
 // Samples of a surface that takes `share` of a pixel.
@@ -78,7 +75,7 @@ Rgb shade_directly(const Job& job, const PixelSurface& surface, const MirroredSi
   if (int(surface.mirrors.size()) >= std::max(1, job.settings.max_depth)) return {};
   const auto shade_at = [&](const MirroredSight& at) {
     return at.throughput *
-           direct_light(job.scene.scene(), job.emitters, at.sight, surface, rays);
+           direct_light(job.scene.scene(), job.lights, at.sight, surface, rays);
   };
   if (surface.samples.size() < 2) return shade_at(first);
   Rgb sum;
@@ -110,7 +107,8 @@ Rgb shade(const Job& job, const BeamPixel& pixel, const PixelSurface& surface,
     Sampler sampler(job.options.seed, std::uint32_t(pixel.x), std::uint32_t(pixel.y),
                     job.options.samples.first + sample++);
     const Vec2d at = path_start(pixel, surface, i, sampler);
-    const MirroredSight start = make_sight(job.scene, surface, at);
+    MirroredSight start = make_sight(job.scene, surface, at);
+    start.sight.knows_area_lights = job.knows_area_lights;
     other += start.throughput *
              trace_known_sight(job.scene.scene(), job.settings, start.sight, sampler, rays).radiance;
   }
@@ -179,7 +177,7 @@ std::vector<TileCounts> render_tiles(const Job& job, const Tracer& tracer, Layer
 
 class BeamRenderer final : public Renderer {
  public:
-  explicit BeamRenderer(BeamRule rule) : rule_(rule) {}
+  explicit BeamRenderer(const BeamSettings& settings) : settings_(settings) {}
 
   [[nodiscard]] std::vector<std::string> aovs() const override {
     return {kCoverageLo, kCoverageHi, kUncertified};
@@ -190,24 +188,25 @@ class BeamRenderer final : public Renderer {
     const auto start = std::chrono::steady_clock::now();
     const ImageSettings& image = scene.scene().image;
     const BeamScene beams(scene, make_eye(scene.scene()));
-    Job job{beams, options, {.max_depth = image.max_depth}, {}, false};
-    job.emitters = point_like_emitters(scene.geometry().lights);
-    job.needs_paths = needs_paths(scene.geometry(), job.settings, job.emitters.size());
+    Job job{beams, options, {.max_depth = image.max_depth}, {}};
+    job.lights = make_beam_lights(scene.geometry().lights, settings_.light_beams);
+    job.knows_area_lights = settings_.light_beams > 0;
+    job.needs_paths = needs_paths(scene.geometry(), job.settings, job.knows_area_lights);
     Layers layers;
     layers.picture.color = Image(image.width_px, image.height_px, 3);
     for (const std::string& name : options.aovs) {
       layers.picture.layers.push_back({name, Image(image.width_px, image.height_px, 1)});
     }
     // Four rays a region don't get better by smaller ones as bounds do.
-    const double least = rule_ == BeamRule::corners ? 1.0 / 8 : BeamOptions{}.least_region;
+    const double least = settings_.rule == BeamRule::corners ? 1.0 / 8 : BeamOptions{}.least_region;
     BeamOptions beam{.least_region = least, .threads = options.threads, .is_mirror = {}};
     if (image.max_depth > 0) {
       beam.is_mirror = [&](const SeenSurface& seen) { return is_mirror(beams, seen); };
     }
-    const std::vector<LightPlace> lights = make_light_places(scene.geometry(), job.emitters);
+    const std::vector<LightPlace> lights = make_light_places(scene.geometry(), job.lights);
     const auto render_with = [&](const auto& tracer) { return render_tiles(job, tracer, layers); };
     const std::vector<TileCounts> counts =
-        rule_ == BeamRule::corners
+        settings_.rule == BeamRule::corners
             ? render_with(CornerTracer(beams.solids(), beams.eye(), image.width_px, image.height_px, beam))
             : render_with(
                   BeamTracer(beams.solids(), beams.eye(), image.width_px, image.height_px, beam,
@@ -237,13 +236,13 @@ class BeamRenderer final : public Renderer {
     result.rays.camera = sum.rays;
   }
 
-  BeamRule rule_;
+  BeamSettings settings_;
 };
 
 }  // namespace
 
-std::unique_ptr<Renderer> make_beam_renderer(BeamRule rule) {
-  return std::make_unique<BeamRenderer>(rule);
+std::unique_ptr<Renderer> make_beam_renderer(const BeamSettings& settings) {
+  return std::make_unique<BeamRenderer>(settings);
 }
 
 std::vector<std::string> beam_problems(const Scene& scene) {

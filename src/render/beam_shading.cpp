@@ -1,5 +1,7 @@
 #include "render/beam_shading.h"
 
+#include <algorithm>
+
 #include "render/surface_point.h"
 #include "shading/lights.h"
 
@@ -13,13 +15,66 @@ bool is_point_like(EmitterKind kind) {
 
 }  // namespace
 
-std::vector<Emitter> point_like_emitters(const LightSet& lights) {
-  std::vector<Emitter> emitters;
+std::vector<BeamLight> make_beam_lights(const LightSet& lights, int light_beams) {
+  std::vector<BeamLight> all;
   for (const Emitter& e : lights.emitters) {
-    if (is_point_like(e.kind)) emitters.push_back(e);
+    if (is_point_like(e.kind)) all.push_back({e});
   }
-  return emitters;
+  for (const Emitter& e : lights.emitters) {
+    if (e.kind != EmitterKind::rectangle) continue;
+    const RectangleEmitter& light = lights.rectangles[e.index];
+    const float side = 1.0F / float(std::max(1, light_beams));
+    for (int i = 0; i < light_beams * light_beams; ++i) {
+      const float u = (float(i % light_beams) + 0.5F) * side;
+      const float v = (float(i / light_beams) + 0.5F) * side;
+      all.push_back({e, light.corner + light.edge_u * u + light.edge_v * v, side * side});
+    }
+  }
+  return all;
 }
+
+LightPlace place_of(const LightSet& lights, const BeamLight& light) {
+  LightPlace place;
+  const std::uint32_t i = light.emitter.index;
+  switch (light.emitter.kind) {
+    case EmitterKind::directional:
+      place.is_directional = true;
+      place.direction = -Vec3d(lights.directionals[i].wi);
+      break;
+    case EmitterKind::point:
+      place.position = Vec3d(lights.points[i].position);
+      break;
+    case EmitterKind::spot:
+      place.position = Vec3d(lights.spots[i].position);
+      break;
+    default:
+      place.position = Vec3d(light.position);
+  }
+  return place;
+}
+
+namespace {
+
+// As of a light without extent: radiance is what arrives on a surface that faces it.
+LightSample sample_beam_light(const LightSet& lights, const BeamLight& light, Vec3f point) {
+  if (light.emitter.kind != EmitterKind::rectangle) {
+    return sample_emitter(lights, light.emitter, point, {});
+  }
+  const RectangleEmitter& area = lights.rectangles[light.emitter.index];
+  const Vec3f to = light.position - point;
+  LightSample sample;
+  sample.distance = length(to);
+  if (!(sample.distance > 0)) return sample;
+  sample.wi = to * (1 / sample.distance);
+  const float cosine = -dot(sample.wi, area.normal);
+  if (!(cosine > 0)) return sample;
+  sample.radiance = area.radiance *
+                    (cosine * area.area * light.share / (sample.distance * sample.distance));
+  sample.pdf = 1;
+  return sample;
+}
+
+}  // namespace
 
 bool is_mirror(const BeamScene& scene, const SeenSurface& seen) {
   const PreparedMaterial& material =
@@ -62,18 +117,18 @@ MirroredSight make_sight(const BeamScene& scene, const PixelSurface& surface, Ve
   return out;
 }
 
-Rgb direct_light(const PreparedScene& scene, const std::vector<Emitter>& emitters,
+Rgb direct_light(const PreparedScene& scene, const std::vector<BeamLight>& beam_lights,
                  const KnownSight& sight, const PixelSurface& surface, PathRays& rays) {
   Rgb sum;
-  if (emitters.empty() || !sight.hit) return sum;
+  if (beam_lights.empty() || !sight.hit) return sum;
   const SurfaceHit& hit = *sight.hit;
   std::optional<SurfaceMaterial> storage;
   const SurfaceMaterial& material = material_at(scene, hit, storage);
   const Frame frame = shading_frame(scene, hit, material);
   const Bsdf bsdf = bsdf_at(hit, material, frame, sight.ray.direction);
   const LightSet& lights = scene.geometry().lights;
-  for (std::size_t i = 0; i < emitters.size(); ++i) {
-    const LightSample light = sample_emitter(lights, emitters[i], hit.position, {});
+  for (std::size_t i = 0; i < beam_lights.size(); ++i) {
+    const LightSample light = sample_beam_light(lights, beam_lights[i], hit.position);
     if (!(light.pdf > 0)) continue;
     const Vec3f wi = local_from_world(frame, light.wi);
     // Behind the surface as it is, though not as it is shaded, is behind it.

@@ -12,8 +12,16 @@
 
 namespace arris {
 
-// The emitters without extent, in this order in the bits of PixelSurface::lit.
-std::vector<Emitter> point_like_emitters(const LightSet& lights);
+// A light without extent, or one of the points that stand for an area light.
+struct BeamLight {
+  Emitter emitter;
+  Vec3f position{};  // of an area light's point
+  float share = 1;   // of its area
+};
+// In this order in the bits of PixelSurface::lit. Area lights are `light_beams` points a side, or left out if 0.
+std::vector<BeamLight> make_beam_lights(const LightSet& lights, int light_beams);
+// Where shadows are to be looked for from.
+LightPlace place_of(const LightSet& lights, const BeamLight& light);
 
 // By way of the surface's mirrors.
 struct MirroredSight {
@@ -25,7 +33,7 @@ MirroredSight make_sight(const BeamScene& scene, const PixelSurface& surface, Ve
 // Does the surface nothing but reflect like a mirror?
 bool is_mirror(const BeamScene& scene, const SeenSurface& seen);
 
-Rgb direct_light(const PreparedScene& scene, const std::vector<Emitter>& emitters,
+Rgb direct_light(const PreparedScene& scene, const std::vector<BeamLight>& lights,
                  const KnownSight& sight, const PixelSurface& surface, PathRays& rays);
 
 }  // namespace arris

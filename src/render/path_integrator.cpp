@@ -56,6 +56,7 @@ struct Path {
   std::uint32_t passes = 0;
   float passed_distance = 0;
   const KnownSight* known = nullptr;  // until the first vertex is done
+  bool skips_area_lights = false;     // the scattering before knows them
 
   // Weight of an emitter that BSDF sampling found and light sampling finds with density light_pdf.
   template <class LightPdf>
@@ -100,6 +101,7 @@ struct Path {
 };
 
 void Path::add_area_lights(float t_end) {
+  if (skips_area_lights) return;
   for (std::uint32_t i = 0; i < lights.rectangles.size(); ++i) {
     const RectangleEmitter& light = lights.rectangles[i];
     if (kind == RayKind::camera && !light.visible_to_camera) {
@@ -154,9 +156,11 @@ std::optional<Shadow> Path::sample_shadow(const SurfaceHit& hit, const Frame& fr
   const Vec2f u = sampler.next_2d();
   const float u_select = lights.emitters.size() > 1 ? sampler.next_1d() : 0.0F;
   const std::optional<LightSample> light = sample_light(lights, hit.position, u_select, u);
-  if (!light || (known != nullptr && light->is_delta)) {
-    return std::nullopt;
-  }
+  if (!light) return std::nullopt;
+  const bool is_known =
+      light->is_delta || (light->kind == EmitterKind::rectangle && known != nullptr &&
+                          known->knows_area_lights);
+  if (known != nullptr && is_known) return std::nullopt;
   const Vec3f wi = local_from_world(frame, light->wi);
   if (!same_side(light->wi, hit, wi.z < 0)) {
     return std::nullopt;
@@ -274,11 +278,13 @@ PathSample trace(Path& path) {
     path.sampler.set_dimension(kCameraDimensions + std::uint32_t(depth) * kDimensionsPerVertex);
     if (path.passes > 0) path.known = nullptr;  // what is behind it nobody else lights
     const std::optional<Shadow> shadow = path.sample_shadow(*hit, frame, bsdf);
+    const bool knows_area_lights = path.known != nullptr && path.known->knows_area_lights;
     path.known = nullptr;
     path.sampler.set_dimension(kCameraDimensions + std::uint32_t(depth) * kDimensionsPerVertex + 2);
     const Vec2f u = path.sampler.next_2d();
     const bool goes_on = path.scatter(*hit, frame, bsdf, u.x) &&
                          (depth < kRouletteDepth || path.survives_roulette(u.y));
+    path.skips_area_lights = knows_area_lights && path.light_sampled;
     // Traced last: the processor overlaps the arithmetic of both samples, and then both rays.
     if (shadow) {
       ++rays.total;

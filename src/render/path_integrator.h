@@ -44,10 +44,11 @@ PathSample trace_path(const PreparedScene& scene, const PathSettings& settings, 
                       Sampler sampler, PathRays& rays);
 
 // A camera ray of which it is known what it meets, and of which someone else adds up what lights without extent
-// (point, spot, directional) send to that point directly.
+// (point, spot, directional), and perhaps area lights, send to that point directly.
 struct KnownSight {
   TraceRay ray;
   std::optional<SurfaceHit> hit;  // nothing: it leaves the scene
+  bool knows_area_lights = false;  // but for what mirrors and glass show of them
   int mirrors = 0;                // it has left so many mirrors before, which counts as depth
 };
 PathSample trace_known_sight(const PreparedScene& scene, const PathSettings& settings,

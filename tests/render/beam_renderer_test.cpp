@@ -58,7 +58,7 @@ TEST(beam_renderer, agrees_with_the_path_tracer) {
   const Image beam = render(scene, *make_beam_renderer(), 1).picture.color;
   const Image many = render(scene, *make_path_renderer(), 1024).picture.color;
   EXPECT_LT(rmse(beam, many), 0.01);
-  const Image corners = render(scene, *make_beam_renderer(BeamRule::corners), 1).picture.color;
+  const Image corners = render(scene, *make_beam_renderer({.rule = BeamRule::corners}), 1).picture.color;
   EXPECT_LT(rmse(corners, many), 0.02);
 }
 
@@ -70,6 +70,27 @@ TEST(beam_renderer, other_light_is_path_traced) {
   const Image path = render(scene, *make_path_renderer(), 1024).picture.color;
   EXPECT_LT(rmse(beam, path), 0.03);
   EXPECT_NEAR(mean_of(beam), mean_of(path), 0.01 * mean_of(path));
+}
+
+// 64 points for an area light that is not near.
+TEST(beam_renderer, area_lights_can_be_sets_of_beams) {
+  Scene scene = beam_scene();
+  AreaLight light;
+  light.corner = {1, -3.5, 5};
+  light.edge_u = {0, 1.5, 0};
+  light.edge_v = {1.5, 0, 0};
+  light.radiance = {20, 20, 20};
+  scene.lights = {light};
+  const auto renderer = make_beam_renderer({.light_beams = 8});
+  const Image beam = render(scene, *renderer, 1).picture.color;
+  const Image path = render(scene, *make_path_renderer(), 2048).picture.color;
+  EXPECT_GT(mean_of(path), 0.05);
+  EXPECT_LT(rmse(beam, path), 0.01);
+  scene.image.max_depth = 3;
+  scene.environment = ConstantEnvironment{{0.2F, 0.2F, 0.2F}};
+  EXPECT_LT(rmse(render(scene, *renderer, 256).picture.color,
+                 render(scene, *make_path_renderer(), 1024).picture.color),
+            0.02);
 }
 
 // A floor of polished metal below the slab, which shows its underside and the lamp's light on it.
