@@ -8,7 +8,6 @@ namespace arris {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr std::size_t kMostLights = 32;
 // Each lit plane has a view and lists of its own: too dear for the facets of a large mesh.
 constexpr std::size_t kMostLitFacets = 256;
 
@@ -46,7 +45,7 @@ ShadowLooker::ShadowLooker(std::span<const BeamSolid> solids, const EyeRays& eye
                            std::span<const LightPlace> lights)
     : solids_(solids),
       eye_(eye),
-      lights_(lights.first(std::min(lights.size(), kMostLights))),
+      lights_(lights),
       reach_(2 * diameter_of(solids)) {}
 
 namespace {
@@ -79,42 +78,65 @@ void splice(LookTree& tree, std::uint32_t at, std::uint32_t bit,
 
 }  // namespace
 
-bool ShadowLooker::add_shadows(LookTree& tree, const Rect& rect, ShadowLists& lists,
-                               std::uint64_t& regions,
-                               const std::function<bool(const LookNode&)>& unlit) const {
-  if (!(reach_ > 0) || !std::isfinite(reach_)) return true;
-  bool complete = true;
-  std::vector<std::uint32_t> surfaces;
+std::vector<std::uint32_t> ShadowLooker::find_lit(const LookTree& tree,
+                                                  const Unlit& unlit) const {
+  std::vector<std::uint32_t> lit;
   for (std::uint32_t i = 0; i < tree.nodes.size(); ++i) {
     const LookNode& node = tree.nodes[i];
     if (node.kind != LookNode::Kind::surface || !node.seen.surface.is_plane()) continue;
-    if (unlit && unlit(node)) continue;
+    if (node.mirrors != 0 || (unlit && unlit(node))) continue;
     const BeamShape& shape = *solids_[node.seen.solid].shape;
     const bool is_facet = shape.facet(node.seen.leaf) != nullptr;
-    if (!is_facet || shape.facet_count() <= kMostLitFacets) surfaces.push_back(i);
+    if (!is_facet || shape.facet_count() <= kMostLitFacets) lit.push_back(i);
   }
+  return lit;
+}
+
+bool ShadowLooker::add_shadows(LookTree& tree, const Rect& rect, ShadowLists& lists,
+                               std::uint64_t& regions, const Unlit& unlit) const {
+  if (!is_joint() || !(reach_ > 0) || !std::isfinite(reach_)) return true;
+  bool complete = true;
+  std::vector<std::uint32_t> surfaces = find_lit(tree, unlit);
   for (std::uint32_t light = 0; light < lights_.size(); ++light) {
-    const auto first_new = std::uint32_t(tree.nodes.size());
-    std::vector<Placed> looks;  // one for each plane, however often it is seen
-    for (const std::uint32_t node : surfaces) {
-      const BeamSurface surface = tree.nodes[node].seen.surface;
-      auto known = std::ranges::find_if(looks, [&](const Placed& p) {
-        return p.lit.solid == surface.solid && p.lit.plane == surface.index;
-      });
-      if (known == looks.end()) {
-        const LitPlane lit{surface.solid, surface.index};
-        looks.push_back({lit, look_from_light(lit, light, rect, lists)});
-        known = looks.end() - 1;
-        ++regions;
-        complete = complete && (!known->seen_by_light || known->seen_by_light->complete);
-      }
-      splice(tree, node, 1U << light, known->seen_by_light);
+    complete = add_light(tree, rect, light, 1U << light, surfaces, lists, regions) && complete;
+  }
+  return complete;
+}
+
+bool ShadowLooker::add_shadow(LookTree& tree, const Rect& rect, std::uint32_t light,
+                              ShadowLists& lists, std::uint64_t& regions,
+                              const Unlit& unlit) const {
+  if (!(reach_ > 0) || !std::isfinite(reach_)) return true;
+  std::vector<std::uint32_t> surfaces = find_lit(tree, unlit);
+  return add_light(tree, rect, light, 1, surfaces, lists, regions);
+}
+
+bool ShadowLooker::add_light(LookTree& tree, const Rect& rect, std::uint32_t light,
+                             std::uint32_t bit, std::vector<std::uint32_t>& surfaces,
+                             ShadowLists& lists, std::uint64_t& regions) const {
+  bool complete = true;
+  const auto first_new = std::uint32_t(tree.nodes.size());
+  std::vector<Placed> looks;  // one for each plane, however often it is seen
+  for (const std::uint32_t node : surfaces) {
+    const BeamSurface surface = tree.nodes[node].seen.surface;
+    auto known = std::ranges::find_if(looks, [&](const Placed& p) {
+      return p.lit.solid == surface.solid && p.lit.plane == surface.index;
+    });
+    if (known == looks.end()) {
+      const LitPlane lit{surface.solid, surface.index};
+      looks.push_back({lit, look_from_light(lit, light, rect, lists)});
+      known = looks.end() - 1;
+      ++regions;
+      complete = complete && (!known->seen_by_light || known->seen_by_light->complete);
     }
-    // What stands in their places now, and what was added below.
-    std::erase_if(surfaces, [&](std::uint32_t i) { return tree.nodes[i].kind != LookNode::Kind::surface; });
-    for (std::uint32_t i = first_new; i < tree.nodes.size(); ++i) {
-      if (tree.nodes[i].kind == LookNode::Kind::surface) surfaces.push_back(i);
-    }
+    splice(tree, node, bit, known->seen_by_light);
+  }
+  // What stands in their places now, and what was added below.
+  std::erase_if(surfaces, [&](std::uint32_t i) {
+    return tree.nodes[i].kind != LookNode::Kind::surface;
+  });
+  for (std::uint32_t i = first_new; i < tree.nodes.size(); ++i) {
+    if (tree.nodes[i].kind == LookNode::Kind::surface) surfaces.push_back(i);
   }
   return complete;
 }

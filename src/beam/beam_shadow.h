@@ -39,17 +39,34 @@ class ShadowLists {
 
 class ShadowLooker {
  public:
-  // At most 32 lights are looked at. `solids` and `lights` must outlive it.
+  // Surfaces for which light does nothing.
+  using Unlit = std::function<bool(const LookNode&)>;
+
+  // `solids` and `lights` must outlive it.
   ShadowLooker(std::span<const BeamSolid> solids, const EyeRays& eye,
                std::span<const LightPlace> lights);
 
-  // Adds signs and bits to the tree's flat surfaces. False: a smaller rectangle may tell more. Regions looked at
-  // are added to `regions`.
-  // Surfaces that are `unlit` need none.
+  // Few lights are looked at together: which of them reach a point is one question. The shadows of many would cut the
+  // picture into too many pieces: how much each of them lights is asked for one by one.
+  [[nodiscard]] bool is_joint() const { return lights_.size() <= kMostJointLights; }
+  [[nodiscard]] std::uint32_t light_count() const { return std::uint32_t(lights_.size()); }
+
+  // Adds signs and bits to the tree's flat surfaces, if lights are joint. False: a smaller rectangle may tell more.
+  // Regions looked at are added to `regions`.
   bool add_shadows(LookTree& tree, const Rect& rect, ShadowLists& lists, std::uint64_t& regions,
-                   const std::function<bool(const LookNode&)>& unlit = {}) const;
+                   const Unlit& unlit = {}) const;
+  // Those of one light; its bit is the lowest.
+  bool add_shadow(LookTree& tree, const Rect& rect, std::uint32_t light, ShadowLists& lists,
+                  std::uint64_t& regions, const Unlit& unlit = {}) const;
 
  private:
+  static constexpr std::size_t kMostJointLights = 4;
+
+  [[nodiscard]] std::vector<std::uint32_t> find_lit(const LookTree& tree, const Unlit& unlit) const;
+  // Replaces `surfaces` by the ends below them.
+  bool add_light(LookTree& tree, const Rect& rect, std::uint32_t light, std::uint32_t bit,
+                 std::vector<std::uint32_t>& surfaces, ShadowLists& lists,
+                 std::uint64_t& regions) const;
   [[nodiscard]] Sign side_of_light(LitPlane lit, std::uint32_t light) const;
   // Nothing: the light is behind the plane.
   [[nodiscard]] std::optional<LookTree> look_from_light(LitPlane lit, std::uint32_t light,

@@ -75,6 +75,7 @@ class BeamTracer::Tracer {
     const bool complete = (tree.complete || smallest) && add_light(tree, rect);
     if (complete || smallest) {
       add_ends(tree, areas_of(tree, rect), parts);
+      add_lit_shares(tree, rect);
       return;
     }
     for (const Rect& part : quarters_of(rect)) {
@@ -113,6 +114,7 @@ class BeamTracer::Tracer {
       options.tolerance /= 4;
       options.least_side /= 4;
     }
+    add_lit_shares(tree, pixel);
     finish_pixel(pixel);
   }
 
@@ -142,9 +144,48 @@ class BeamTracer::Tracer {
       surface.sample_weight = end.estimate;
       surface.mirror_open = node.mirror_open;
       surface.mirror_number = node.mirrors;
+      if (!shared_.shadows_.is_joint()) {
+        surface.lit_shares.resize(shared_.shadows_.light_count());
+        for (LitShare& share : surface.lit_shares) share.open = end.estimate;
+      }
       const bool is_curved = node.kind == LookNode::Kind::surface && !node.seen.surface.is_plane();
       if (is_curved && end.lo < 1) surface.samples = end.samples;
       add(surface);
+    }
+  }
+
+  // How much of each surface each light reaches, where that is asked for one by one.
+  void add_lit_shares(const LookTree& tree, const Rect& rect) {
+    if (shared_.shadows_.is_joint()) return;
+    for (std::uint32_t light = 0; light < shared_.shadows_.light_count(); ++light) {
+      add_lit_share(tree, rect, light);
+    }
+  }
+  void add_lit_share(const LookTree& tree, const Rect& rect, std::uint32_t light) {
+    LookTree lit = tree;
+    const MirrorLooker& mirrors = shared_.mirrors_;
+    const bool complete =
+        shared_.shadows_.add_shadow(lit, rect, light, lists_, stats_.regions,
+                                    [&](const LookNode& node) { return mirrors.is_mirror(node); });
+    if (!complete && rect.width() > shared_.options_.least_shadow_region) {
+      for (const Rect& part : quarters_of(rect)) add_lit_share(tree, part, light);
+      return;
+    }
+    for (const EndArea& end : areas_of(lit, rect)) {
+      const LookNode& node = lit.nodes[end.node];
+      if (node.kind != LookNode::Kind::surface || node.lit_known == 0) continue;
+      PixelSurface surface;
+      surface.seen = node.seen;
+      surface.mirror_number = node.mirrors;
+      surface.mirror_open = node.mirror_open;
+      PixelSurface& entry = entry_of(surface);
+      entry.lit_shares.resize(shared_.shadows_.light_count());
+      LitShare& share = entry.lit_shares[light];
+      share.open -= end.estimate;
+      if (node.lit == 0) continue;
+      share.lo += end.lo;
+      share.hi += end.hi;
+      share.estimate += end.estimate;
     }
   }
 
@@ -241,6 +282,10 @@ class BeamTracer::Tracer {
     known.lo += surface.lo;
     known.hi += surface.hi;
     known.estimate += surface.estimate;
+    known.lit_shares.resize(surface.lit_shares.size());
+    for (std::size_t i = 0; i < known.lit_shares.size(); ++i) {
+      known.lit_shares[i].open += surface.lit_shares[i].open;
+    }
     known.samples.insert(known.samples.end(), surface.samples.begin(), surface.samples.end());
     if (surface.sample_weight > known.sample_weight) {
       known.sample = surface.sample;

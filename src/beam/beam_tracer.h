@@ -25,10 +25,17 @@
 
 namespace arris {
 
+// The part of a pixel's surface that a light reaches, in parts of the pixel.
+struct LitShare {
+  double lo = 0, hi = 0, estimate = 0;
+  double open = 0;  // where it is not known, which the estimate leaves out
+};
+
 // What a pixel shows; nothing: what is behind all solids.
 struct PixelSurface {
   std::optional<SeenSurface> seen;
   std::uint32_t lit = 0, lit_known = 0;  // by light; see beam_shadow.h
+  std::vector<LitShare> lit_shares;      // by light, where lights are not looked at jointly; else empty
   double lo = 0, hi = 0, estimate = 0;   // parts of the pixel; estimates add up to 1
   Vec2d sample;                          // a point of the picture where it is seen, or may be
   double sample_weight = -1;             // the area that the sample stands for
@@ -57,6 +64,7 @@ struct BeamStats {
 struct BeamOptions {
   double tolerance = 1.0 / 512;    // of hi - lo
   double least_region = 1.0 / 64;       // of a pixel's side
+  double least_shadow_region = 1.0 / 8;  // where lights are not looked at jointly
   double least_open_region = 1.0 / 8;   // where a leaf that is not convex is among what may be seen
   int tile_px = 16;                // a power of two
   int threads = 0;                 // 0: all

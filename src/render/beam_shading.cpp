@@ -117,6 +117,28 @@ MirroredSight make_sight(const BeamScene& scene, const PixelSurface& surface, Ve
   return out;
 }
 
+namespace {
+
+// The share of a surface that a light reaches, and that of which it is not known.
+struct Shading {
+  float lit = 0, open = 1;
+};
+
+Shading known_shading(const PixelSurface& surface, std::size_t light) {
+  constexpr double kLeastOpen = 1.0 / 512;
+  if (surface.lit_shares.empty()) {
+    if (light >= 32 || ((surface.lit_known >> light) & 1U) == 0) return {};
+    return {((surface.lit >> light) & 1U) != 0 ? 1.0F : 0.0F, 0};
+  }
+  const LitShare& share = surface.lit_shares[light];
+  if (!(surface.estimate > 0)) return {};
+  const double open = share.open / surface.estimate;
+  return {float(std::clamp(share.estimate / surface.estimate, 0.0, 1.0)),
+          open > kLeastOpen ? float(std::min(open, 1.0)) : 0.0F};
+}
+
+}  // namespace
+
 Rgb direct_light(const PreparedScene& scene, const std::vector<BeamLight>& beam_lights,
                  const KnownSight& sight, const PixelSurface& surface, PathRays& rays) {
   Rgb sum;
@@ -136,14 +158,13 @@ Rgb direct_light(const PreparedScene& scene, const std::vector<BeamLight>& beam_
     if (from_outside != ((hit.side == Side::outside) == (wi.z > 0))) continue;
     const Rgb value = eval_bsdf_with_pdf(bsdf, wi).value * light.radiance * material.opacity;
     if (!(max_component(value) > 0)) continue;
-    if (i < 32 && ((surface.lit_known >> i) & 1U) != 0) {
-      if (((surface.lit >> i) & 1U) != 0) sum += value;
-      continue;
-    }
+    const Shading shading = known_shading(surface, i);
+    sum += value * shading.lit;
+    if (!(shading.open > 0)) continue;
     TraceRay shadow = leave_surface(hit, light.wi);
     shadow.t_max = light.distance;
     ++rays.total;
-    sum += value * scene.transmittance(shadow);
+    sum += value * (shading.open * scene.transmittance(shadow));
   }
   return sum;
 }

@@ -41,6 +41,57 @@ BeamScene shadow_scene(CsgRandom& random, int count) {
   return scene;
 }
 
+constexpr int kGrid = 24;
+
+// Of the floor, in parts of the pixel, by rays.
+double lit_share(const BeamScene& scene, const LightPlace& light, int x_px, int y_px) {
+  double lit = 0;
+  for (int k = 0; k < kGrid * kGrid; ++k) {
+    const double x = x_px + (k % kGrid + 0.5) / kGrid, y = y_px + (k / kGrid + 0.5) / kGrid;
+    const std::optional<RaySight> hit = see(scene, x, y);
+    if (!hit || hit->seen.solid != 0) continue;
+    const Ray ray = ray_through(scene.eye, {x, y});
+    const Vec3d p = ray.origin + ray.direction * hit->depth;
+    const Vec3d to = light.is_directional ? p - light.direction * 20.0 : light.position;
+    if (!is_blocked(scene, p, to)) lit += 1.0 / (kGrid * kGrid);
+  }
+  return lit;
+}
+
+// Too many lights to be looked at jointly.
+TEST(beam_shadow, shares_of_many_lights_hold_what_rays_find) {
+  CsgRandom random(9);
+  double open = 0, partly = 0;
+  for (int i = 0; i < 8; ++i) {
+    const BeamScene scene = shadow_scene(random, 1 + i % 3);
+    std::vector<LightPlace> lights(6);
+    for (LightPlace& light : lights) {
+      light.position = {uniform(random, -3, 3), uniform(random, -3, 3), 9};
+    }
+    const BeamTracer tracer(scene.placed, scene.eye, 4, 4, {}, lights);
+    for (const BeamTile& tile : tracer.make_tiles()) {
+      tracer.trace_tile(tile, [&](const BeamPixel& pixel) {
+        for (std::size_t l = 0; l < lights.size(); ++l) {
+          LitShare sum;
+          for (const PixelSurface& s : pixel.surfaces) {
+            if (!s.seen || s.seen->solid != 0 || s.lit_shares.empty()) continue;
+            sum.lo += s.lit_shares[l].lo;
+            sum.hi += s.lit_shares[l].hi;
+            sum.open += s.lit_shares[l].open;
+          }
+          const double lit = lit_share(scene, lights[l], pixel.x, pixel.y);
+          EXPECT_GE(lit, sum.lo - 3.0 / kGrid) << i;
+          EXPECT_LE(lit, sum.hi + sum.open + 3.0 / kGrid) << i;
+          open += sum.open;
+          partly += sum.lo > 0.01 && sum.lo < 0.99 ? 1 : 0;
+        }
+      });
+    }
+  }
+  EXPECT_LT(open, 8);  // of 768 pixels and lights
+  EXPECT_GT(partly, 60);
+}
+
 TEST(beam_shadow, shares_of_lit_surface_hold_what_rays_find) {
   CsgRandom random(3);
   int known = 0, partly = 0;
@@ -61,18 +112,7 @@ TEST(beam_shadow, shares_of_lit_surface_hold_what_rays_find) {
           low += s.lo;
           high += s.hi;
         }
-        constexpr int kGrid = 24;
-        double lit = 0;
-        for (int k = 0; k < kGrid * kGrid; ++k) {
-          const double x = pixel.x + (k % kGrid + 0.5) / kGrid;
-          const double y = pixel.y + (k / kGrid + 0.5) / kGrid;
-          const std::optional<RaySight> hit = see(scene, x, y);
-          if (!hit || hit->seen.solid != 0) continue;
-          const Ray ray = ray_through(scene.eye, {x, y});
-          const Vec3d p = ray.origin + ray.direction * hit->depth;
-          const Vec3d to = light.is_directional ? p - light.direction * 20.0 : light.position;
-          if (!is_blocked(scene, p, to)) lit += 1.0 / (kGrid * kGrid);
-        }
+        const double lit = lit_share(scene, light, pixel.x, pixel.y);
         const double slack = 3.0 / kGrid;
         EXPECT_GE(lit, low - slack) << i;
         EXPECT_LE(lit, high + open + slack) << i;
