@@ -4,7 +4,9 @@
 Checks   includes point to the left only: base, image, csg, scene, geometry, edges, then rounding,
          beam, edgepoint and shading (which never include each other), then render; io takes only
          base, image, scene and geometry; the public headers take only each other; no cycles of
-         headers; files of at most 700 lines, lines of at most 120 columns; no notes to do later.
+         headers; files of at most 700 lines, lines of at most 120 columns; no notes to do later. A file
+         that uses a common name of the standard library includes its header, or a header of the project
+         that does: precompiled headers and batches (batches.py) would hide from compilers that it doesn't.
 Prints   one line for each finding: file:line: what is wrong. Exit 1 if there is any.
 Usage    check-includes.py [ROOT] | check-includes.py --self-test
 """
@@ -28,6 +30,59 @@ MAY_INCLUDE["io"] = {"base", "image", "scene", "geometry"}
 
 INCLUDE = re.compile(r'^\s*#\s*include\s*(?:"([^"]+)"|<(arris/[^>]+)>)')
 LATER = re.compile(r"\b(" + "|".join(["TO" + "DO", "FIX" + "ME", "XX" + "X", "HA" + "CK"]) + r")\b")
+
+# The names looked for; those that come with most headers anyway (std::move, std::errc) are not.
+STANDARD_NAMES = {
+    "algorithm": "all_of any_of clamp copy count count_if equal fill find find_if lower_bound max max_element "
+    "min min_element minmax none_of nth_element ranges reverse rotate sort stable_sort transform unique upper_bound",
+    "array": "array to_array",
+    "atomic": "atomic atomic_ref",
+    "bit": "bit_cast bit_width countl_zero countr_zero endian has_single_bit popcount",
+    "charconv": "from_chars to_chars",
+    "chrono": "chrono",
+    "cmath": "acos asin atan atan2 cbrt ceil copysign cos exp fabs floor fma fmod frexp hypot isfinite isinf "
+    "isnan ldexp llround log log2 lround nextafter pow round signbit sin sqrt tan trunc",
+    "complex": "complex",
+    "condition_variable": "condition_variable",
+    "cstdint": "int8_t int16_t int32_t int64_t uint8_t uint16_t uint32_t uint64_t",
+    "cstdio": "FILE fopen fputs fread printf remove snprintf",
+    "cstdlib": "abort exit getenv",
+    "cstring": "memcmp memcpy memset strlen",
+    "deque": "deque",
+    "filesystem": "filesystem",
+    "fstream": "ifstream ofstream",
+    "functional": "function greater hash less",
+    "future": "async future",
+    "initializer_list": "initializer_list",
+    "iomanip": "setprecision setw",
+    "iostream": "cerr cin cout",
+    "limits": "numeric_limits",
+    "list": "list",
+    "map": "map multimap",
+    "memory": "make_shared make_unique shared_ptr unique_ptr weak_ptr",
+    "mutex": "lock_guard mutex scoped_lock unique_lock",
+    "numbers": "numbers",
+    "numeric": "accumulate gcd inner_product iota partial_sum",
+    "optional": "make_optional nullopt optional",
+    "queue": "priority_queue queue",
+    "random": "mt19937 mt19937_64 normal_distribution uniform_int_distribution uniform_real_distribution",
+    "regex": "regex",
+    "set": "multiset set",
+    "span": "as_bytes span",
+    "sstream": "istringstream ostringstream stringstream",
+    "string": "getline stod stoi stoul string to_string",
+    "string_view": "string_view",
+    "thread": "jthread this_thread thread",
+    "tuple": "make_tuple tie tuple",
+    "type_traits": "conditional_t decay_t invoke_result_t is_floating_point_v is_same_v",
+    "unordered_map": "unordered_map",
+    "unordered_set": "unordered_set",
+    "variant": "get_if holds_alternative monostate variant visit",
+}
+HEADER_OF = {name: header for header, names in STANDARD_NAMES.items() for name in names.split()}
+STANDARD_NAME = re.compile(r"\bstd::(\w+)")
+ANY_INCLUDE = re.compile(r'^\s*#\s*include\s*["<]([^">]+)[">]', re.MULTILINE)
+COMMENT = re.compile(r"(?<!:)//.*")  # not that of a URL
 
 
 def source_files(root):
@@ -109,6 +164,41 @@ def check_cycles(root):
             yield from walk(path, [])
 
 
+def check_standard_headers(root):
+    folders = ("include", "src", "apps", "tests", "bench")
+    texts = {}
+
+    def text_of(path):
+        if path not in texts:
+            texts[path] = path.read_text(encoding="utf-8")
+        return texts[path]
+
+    def reached(path, found):
+        """Adds the names of all headers that the file includes, and the project's among them include."""
+        for name in ANY_INCLUDE.findall(text_of(path)):
+            if name not in found:
+                found.add(name)
+                for folder in folders:
+                    if (root / folder / name).is_file():
+                        reached(root / folder / name, found)
+        return found
+
+    for path in source_files(root):
+        if path.suffix not in (".h", ".cpp") or path.relative_to(root).parts[0] not in folders:
+            continue
+        missing = {}
+        for number, line in enumerate(text_of(path).splitlines(), 1):
+            for name in STANDARD_NAME.findall(COMMENT.sub("", line)):
+                if name in HEADER_OF:
+                    missing.setdefault(HEADER_OF[name], (number, name))
+        if "fmt::format" in text_of(path):
+            missing["fmt/format.h"] = (1, "fmt")
+        for header in reached(path, set()):
+            missing.pop(header, None)
+        for header, (number, name) in missing.items():
+            yield path, number, f"{name} without <{header}>"
+
+
 def check_texts(root):
     for path in source_files(root):
         lines = path.read_text(encoding="utf-8").splitlines()
@@ -124,7 +214,7 @@ def check_texts(root):
 
 
 def check(root):
-    findings = [*check_arrows(root), *check_cycles(root), *check_texts(root)]
+    findings = [*check_arrows(root), *check_cycles(root), *check_standard_headers(root), *check_texts(root)]
     return [f"{path.relative_to(root)}:{line}: {text}" for path, line, text in findings]
 
 
@@ -153,6 +243,14 @@ SELF_TESTS = [
     ({"src/base/a.cpp": "// x\n" * (MAX_LINES + 1)}, "at most 700: split"),
     ({"src/base/a.cpp": "x" * (MAX_COLUMNS + 1)}, "at most 120"),
     ({"tests/base/a.cpp": "// TO" + "DO: later\n"}, "a note to do something later"),
+    ({"src/base/a.cpp": "// std::map\n#include <string>\nstd::map<int, int> a;\n"}, "a.cpp:3: map without <map>"),
+    (
+        {
+            "src/base/a.cpp": '#include "base/b.h"\nstd::map<int, int> a;\n',
+            "src/base/b.h": ONCE + "#include <map>\n",
+        },
+        None,
+    ),
 ]
 
 

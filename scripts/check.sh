@@ -33,7 +33,7 @@ step_includes() {
 
 step_tidy() { scripts/tidy.py; }
 
-# Without the statistics of samplers, which are about numbers and shoot a million directions each.
+# Built by clang, whose warnings are errors here. Without the statistics of samplers, which are about numbers and shoot a million directions each.
 step_asan() {
   cmake --preset asan
   cmake --build --preset asan
@@ -52,10 +52,11 @@ step_tsan() {
     --no-tests=error
 }
 
+# With the library that step asan has built.
 step_fuzz() {
-  cmake --preset fuzz
-  cmake --build --preset fuzz
-  local fuzzers=(build/fuzz/*_fuzz)
+  cmake --preset asan
+  cmake --build --preset asan --target fuzzers
+  local fuzzers=(build/asan/*_fuzz)
   [ -x "${fuzzers[0]}" ] || { echo "no fuzzers were built"; return 1; }
   export fuzz_seconds
   printf '%s\0' "${fuzzers[@]}" | xargs -0 -n 1 -P "$jobs" scripts/fuzz-one.sh

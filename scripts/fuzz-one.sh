@@ -7,16 +7,16 @@ set -euo pipefail
 cd "$(dirname "$0")/.."
 
 name=$(basename "$1")
-corpus=build/fuzz/corpus/$name
+corpus=build/asan/corpus/$name
 seeds=tests/fuzz/seeds/$name
-mkdir -p "$corpus" build/fuzz/crashes
+mkdir -p "$corpus" build/asan/crashes
 folders=("$corpus")
 [ ! -d "$seeds" ] || folders+=("$seeds")
 options=()
 [ ! -f "tests/fuzz/$name.dict" ] || options+=("-dict=tests/fuzz/$name.dict")
-log=build/fuzz/$name.log
+log=build/asan/$name.log
 if "$1" "${folders[@]}" "${options[@]}" -max_total_time="${fuzz_seconds:-8}" -timeout=10 -rss_limit_mb=2048 \
-  -artifact_prefix="build/fuzz/crashes/$name-" >"$log" 2>&1 </dev/null; then
+  -artifact_prefix="build/asan/crashes/$name-" >"$log" 2>&1 </dev/null; then
   echo "$name: $(tail -n 1 "$log")"
 else
   echo "$name: FAILED, $log ends with:"

@@ -2,6 +2,7 @@
 // Source     TOML v1.0.0 (2021): which tables may be defined twice is its section "Table"
 #include <fmt/format.h>
 
+#include <functional>
 #include <map>
 #include <memory>
 #include <utility>

@@ -13,6 +13,7 @@
 //            filter, as I″ lies on the face of any solid that touches
 #pragma once
 
+#include <algorithm>
 #include <limits>
 
 #include "render/embree_hit.h"

@@ -115,8 +115,9 @@ class BandMaker {
       std::ranges::for_each(triangles, add_to);
       return;
     }
-    const std::array<Slab, 2> slabs = {Slab{j.normal, offset + reach.least, offset + reach.most},
-                                       Slab{axis, reach.along_min, reach.along_max}};
+    const std::array<SlabBounds, 2> slabs = {
+        SlabBounds{j.normal, offset + reach.least, offset + reach.most},
+        SlabBounds{axis, reach.along_min, reach.along_max}};
     tree_of(face).for_each_near(slabs, add_to);
   }
 

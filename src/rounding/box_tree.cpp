@@ -15,7 +15,7 @@ BoxTree::BoxTree(std::vector<Box> boxes) {
   if (!boxes.empty()) build(boxes);
 }
 
-bool BoxTree::reaches(const Node& node, const Slab& slab) {
+bool BoxTree::reaches(const Node& node, const SlabBounds& slab) {
   const Vec3d& n = slab.normal;
   const double middle = dot(n, node.middle);
   const double half = dot(Vec3d(std::abs(n.x), std::abs(n.y), std::abs(n.z)), node.half);

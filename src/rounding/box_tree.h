@@ -14,7 +14,7 @@
 namespace arris {
 
 // All x with low ≤ normal·x ≤ high.
-struct Slab {
+struct SlabBounds {
   Vec3d normal;
   double low, high;
 };
@@ -30,10 +30,10 @@ class BoxTree {
 
   // Visits the item of every box that reaches into all the slabs, and some beside it.
   template <class Visit>
-  void for_each_near(std::span<const Slab> slabs, Visit&& visit) const {
+  void for_each_near(std::span<const SlabBounds> slabs, Visit&& visit) const {
     for_each_where(
         [&](const Node& node) {
-          return std::ranges::all_of(slabs, [&](const Slab& s) { return reaches(node, s); });
+          return std::ranges::all_of(slabs, [&](const SlabBounds& s) { return reaches(node, s); });
         },
         visit);
   }
@@ -64,7 +64,7 @@ class BoxTree {
     }
   }
 
-  static bool reaches(const Node& node, const Slab& slab);
+  static bool reaches(const Node& node, const SlabBounds& slab);
   static bool reaches(const Node& node, Vec3d middle, Vec3d half) {
     for (int axis = 0; axis < 3; ++axis) {
       if (std::abs(node.middle[axis] - middle[axis]) > node.half[axis] + half[axis]) return false;

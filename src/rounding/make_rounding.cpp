@@ -1,6 +1,7 @@
 // make_rounding.cpp — from triangles to a Rounding: weld, find faces, build each shell's network, its bands
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <numeric>
 #include <string>
 

@@ -14,6 +14,7 @@
 // dist − r
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>

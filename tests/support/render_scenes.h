@@ -1,6 +1,7 @@
 // render_scenes.h — small scenes with known answers
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <map>
