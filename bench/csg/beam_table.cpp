@@ -1,199 +1,212 @@
-// beam_table.cpp — missed objects, error, rays and seconds
-// What       Truth is 256 rays a pixel on a regular grid with every light's shadow ray, so it has no noise. It is made
-//            for every sixteenth pixel, on which the error (RMSE of linear light) is taken, and round each small
-//            object. An object counts as missed if what it adds to the 3 x 3 pixels round it, against the median of
-//            those 3 pixels away, is less than a tenth of what it adds in truth, at all its places.
 #include "beam_table.h"
 
 #include <fmt/format.h>
+#include <unistd.h>
 
-#include <algorithm>
-#include <cmath>
+#include <cstdio>
 #include <ctime>
+#include <filesystem>
 #include <fstream>
+#include <functional>
 #include <memory>
-#include <nlohmann/json.hpp>
 #include <optional>
+#include <utility>
 
+#include "arris/error.h"
 #include "arris/io.h"
 #include "arris/render.h"
-#include "base/parallel_for.h"
-#include "render/beam_shading.h"
-#include "render/camera.h"
-#include "render/surface_point.h"
+#include "interleaved.h"
+#include "pov_scene.h"
+#include "povray.h"
+#include "small_objects.h"
 
 namespace arris::bench {
 namespace {
 
-constexpr int kGrid = 16;  // rays of truth a pixel and side
-constexpr int kReach = 3;  // pixels round an object
-constexpr float kUnknown = -1;
+namespace fs = std::filesystem;
 
-struct Place {
-  int x, y;
+constexpr int kSlowRounds = 1;  // of what takes longer than all the others
+
+// POV-Ray's methods. Adaptive ones at usual and low thresholds; with a threshold of 0 every pixel that differs from its
+// neighbours (AM1), or every pixel (AM2), is sampled as densely as +R says.
+struct PovMethod {
+  const char* name;
+  std::vector<std::string> options;
+  bool slow = false;
 };
-struct SmallObject {
-  std::string kind;
-  std::vector<Place> places;
+const std::vector<PovMethod>& pov_methods() {
+  static const std::vector<PovMethod> kMethods{{"POV none", {"-A"}},
+                                               {"POV AM1 A0.3", {"+AM1", "+A0.3", "+R3"}},
+                                               {"POV AM2 A0.1 R3", {"+AM2", "+A0.1", "+R3"}},
+                                               {"POV AM2 A.01 R5", {"+AM2", "+A0.01", "+R5"}},
+                                               {"POV AM1 A0.0 R4", {"+AM1", "+A0.0", "+R4"}},
+                                               {"POV AM2 A0.0 R4", {"+AM2", "+A0.0", "+R4"}},
+                                               {"POV AM2 A0.0 R5", {"+AM2", "+A0.0", "+R5"}, true}};
+  return kMethods;
+}
+
+struct Shot {
+  Image picture;
+  std::uint64_t rays = 0;
+  double seconds = 0, cpu_seconds = 0;
 };
-
-std::vector<SmallObject> load_objects(const std::string& folder, const std::string& scene) {
-  std::ifstream file(folder + "/objects.json");
-  const nlohmann::json json = nlohmann::json::parse(file);
-  std::vector<SmallObject> objects;
-  for (const auto& entry : json.at(scene)) {
-    SmallObject object{entry.at("kind"), {}};
-    const auto add = [&](double x, double y) {
-      if (x > kReach && y > kReach && x < 640 - kReach - 1 && y < 480 - kReach - 1) {
-        object.places.push_back({int(x), int(y)});
-      }
-    };
-    if (entry.contains("points")) {
-      for (const auto& p : entry.at("points")) add(p[0], p[1]);
-    } else {
-      add(entry.at("x"), entry.at("y"));
-    }
-    if (!object.places.empty()) objects.push_back(std::move(object));
-  }
-  return objects;
-}
-
-float luminance(const Image& image, int x, int y) {
-  return (image.at(x, y, 0) + image.at(x, y, 1) + image.at(x, y, 2)) / 3;
-}
-
-bool counts_for_error(int x, int y) {
-  return (x + 5 * y) % 16 == 0;
-}
-
-Image make_truth(const PreparedScene& scene, const std::vector<SmallObject>& objects, int threads) {
-  const ImageSettings& settings = scene.scene().image;
-  Image truth(settings.width_px, settings.height_px, 3);
-  std::ranges::fill(truth.values, kUnknown);
-  std::vector<bool> wanted(std::size_t(settings.width_px) * std::size_t(settings.height_px));
-  const auto want = [&](int x, int y) {
-    wanted[std::size_t(y) * std::size_t(settings.width_px) + std::size_t(x)] = true;
-  };
-  for (int y = 0; y < settings.height_px; ++y) {
-    for (int x = 0; x < settings.width_px; ++x) {
-      if (counts_for_error(x, y)) want(x, y);
-    }
-  }
-  for (const SmallObject& object : objects) {
-    for (const Place& p : object.places) {
-      for (int y = -kReach; y <= kReach; ++y) {
-        for (int x = -kReach; x <= kReach; ++x) want(p.x + x, p.y + y);
-      }
-    }
-  }
-  const CameraRays camera = make_camera_rays(*scene.scene().camera, settings);
-  const std::vector<BeamLight> lights = make_beam_lights(scene.geometry().lights, 0);
-  parallel_for(wanted.size(), {.grain = 256, .threads = threads}, [&](std::size_t i) {
-    if (!wanted[i]) return;
-    const int x = int(i % std::size_t(settings.width_px)),
-              y = int(i / std::size_t(settings.width_px));
-    Rgb sum;
-    PathRays rays;
-    for (int k = 0; k < kGrid * kGrid; ++k) {
-      const double px = x + (k % kGrid + 0.5) / kGrid, py = y + (k / kGrid + 0.5) / kGrid;
-      KnownSight sight{camera_ray(camera, px, py), std::nullopt};
-      sight.hit = scene.intersect(sight.ray);
-      if (!sight.hit) continue;
-      std::optional<SurfaceMaterial> storage;
-      sum += material_at(scene, *sight.hit, storage).emission +
-             direct_light(scene, lights, sight, {}, rays);
-    }
-    for (int c = 0; c < 3; ++c) truth.at(x, y, c) = sum[c] / (kGrid * kGrid);
-  });
-  return truth;
-}
-
-double rmse(const Image& image, const Image& truth) {
-  double sum = 0;
-  int count = 0;
-  for (int y = 0; y < truth.height_px; ++y) {
-    for (int x = 0; x < truth.width_px; ++x) {
-      if (!counts_for_error(x, y)) continue;
-      for (int c = 0; c < 3; ++c) {
-        const double d = double(image.at(x, y, c)) - double(truth.at(x, y, c));
-        sum += d * d;
-        ++count;
-      }
-    }
-  }
-  return std::sqrt(sum / count);
-}
-
-// What stands out from the pixels round it.
-double signal(const Image& image, Place p) {
-  std::vector<float> rim;
-  double sum = 0;
-  for (int y = -kReach; y <= kReach; ++y) {
-    for (int x = -kReach; x <= kReach; ++x) {
-      const float value = luminance(image, p.x + x, p.y + y);
-      if (std::max(std::abs(x), std::abs(y)) == kReach) rim.push_back(value);
-      if (std::max(std::abs(x), std::abs(y)) <= 1) sum += double(value);
-    }
-  }
-  std::ranges::nth_element(rim, rim.begin() + std::ptrdiff_t(rim.size() / 2));
-  return sum - 9 * double(rim[rim.size() / 2]);
-}
-
-std::string count_missed(const Image& image, const Image& truth,
-                         const std::vector<SmallObject>& objects) {
-  int missed = 0, visible = 0;
-  for (const SmallObject& object : objects) {
-    int seen = 0, there = 0;
-    for (const Place& p : object.places) {
-      const double expected = signal(truth, p);
-      if (std::abs(expected) < 2e-3) continue;
-      ++there;
-      seen += signal(image, p) / expected > 0.1 ? 1 : 0;
-    }
-    visible += there > 0 ? 1 : 0;
-    missed += there > 0 && seen == 0 ? 1 : 0;
-  }
-  return fmt::format("{}/{}", missed, visible);
-}
 
 struct Row {
   std::string name;
-  std::unique_ptr<Renderer> renderer;
-  std::uint32_t samples;
+  std::function<Shot()> render;
+  const Image* truth = nullptr;
+  int rounds = 1;
+  Shot first;
+  std::vector<double> seconds, cpu_seconds;
 };
 
-void print_scene(const BeamTableSettings& settings, const std::string& name) {
+// Where POV-Ray's files are; removed with what is in it unless it is to be kept.
+class WorkFolder {
+ public:
+  explicit WorkFolder(const std::string& keep)
+      : path_(keep.empty() ? fs::temp_directory_path() / fmt::format("bench_csg-{}", ::getpid())
+                           : fs::absolute(keep)),
+        removed_(keep.empty()) {
+    fs::create_directories(path_);
+  }
+  WorkFolder(const WorkFolder&) = delete;
+  WorkFolder& operator=(const WorkFolder&) = delete;
+  ~WorkFolder() {
+    std::error_code ignored;
+    if (removed_) fs::remove_all(path_, ignored);
+  }
+  [[nodiscard]] const fs::path& path() const { return path_; }
+
+ private:
+  fs::path path_;
+  bool removed_;
+};
+
+Shot shoot(const Renderer& renderer, const PreparedScene& scene, const RenderOptions& options) {
+  const std::clock_t start = std::clock();
+  RenderResult result = renderer.render(scene, options);
+  return {std::move(result.picture.color), result.rays.total, result.seconds,
+          double(std::clock() - start) / CLOCKS_PER_SEC};
+}
+
+void add_own_rows(const BeamTableSettings& settings, const PreparedScene& scene, const Image& truth,
+                  std::vector<Row>& rows) {
+  const auto add = [&](std::string name, std::shared_ptr<const Renderer> renderer, int samples) {
+    RenderOptions options;
+    options.samples = {0, std::uint32_t(samples)};
+    options.threads = settings.threads;
+    rows.push_back({std::move(name),
+                    [&scene, options, renderer = std::move(renderer)] {
+                      return shoot(*renderer, scene, options);
+                    },
+                    &truth,
+                    settings.rounds,
+                    {},
+                    {},
+                    {}});
+  };
+  add("beam certified", make_beam_renderer(), 1);
+  if (settings.corners) add("beam corners", make_beam_renderer({.rule = BeamRule::corners}), 1);
+  for (const int samples : settings.path_samples) {
+    add(fmt::format("path {}", samples), make_path_renderer(), samples);
+  }
+}
+
+Shot shoot(const PovJob& job) {
+  PovPicture result = run_povray(job);
+  return {std::move(result.color), result.rays, result.seconds, result.cpu_seconds};
+}
+
+// The scene for POV-Ray, in the folder, and its dense picture.
+Image make_pov_truth(PovJob job, const Scene& scene) {
+  std::ofstream(job.folder / (job.scene + ".pov")) << pov_scene(scene);
+  job.width_px = scene.image.width_px * kTruthGrid;
+  job.height_px = scene.image.height_px * kTruthGrid;
+  job.options = {"-A"};
+  return shrink_to_truth(run_povray(job).color);
+}
+
+void add_pov_rows(const BeamTableSettings& settings, const PovJob& base, const Image& truth,
+                  std::vector<Row>& rows) {
+  for (const PovMethod& method : pov_methods()) {
+    PovJob job = base;
+    job.options = method.options;
+    rows.push_back({method.name,
+                    [job] { return shoot(job); },
+                    &truth,
+                    method.slow ? std::min(kSlowRounds, settings.rounds) : settings.rounds,
+                    {},
+                    {},
+                    {}});
+  }
+}
+
+void render_in_turn(std::vector<Row>& rows, int rounds) {
+  for (int round = 0; round < rounds; ++round) {
+    for (std::size_t k = 0; k < rows.size(); ++k) {
+      Row& row = rows[round % 2 == 0 ? k : rows.size() - 1 - k];
+      if (round >= row.rounds) continue;
+      Shot shot = row.render();
+      row.seconds.push_back(shot.seconds);
+      row.cpu_seconds.push_back(shot.cpu_seconds);
+      if (round == 0) row.first = std::move(shot);
+    }
+  }
+}
+
+void print_rows(const std::string& scene, const std::vector<Row>& rows,
+                const std::vector<SmallObject>& objects) {
+  const Row& beam = rows[0];
+  for (const Row& row : rows) {
+    const Missed missed = count_missed(row.first.picture, *row.truth, objects);
+    fmt::print("{:<8} {:<15} {:>7} {:>8.5f} {:>11} {:>8.2f} {:>8.2f} {:>8.2f} {:>8.2f}\n", scene,
+               row.name, fmt::format("{}/{}", missed.missed, missed.visible),
+               rmse(row.first.picture, *row.truth), row.first.rays, median(row.seconds),
+               median(row.cpu_seconds), 1 / median_ratio(row.seconds, beam.seconds),
+               1 / median_ratio(row.cpu_seconds, beam.cpu_seconds));
+  }
+  std::fflush(stdout);
+}
+
+void run_scene(const BeamTableSettings& settings, const std::string& name,
+               const std::optional<fs::path>& povray, const fs::path& folder) {
   const auto prepared = prepare_scene(load_scene(settings.folder + "/" + name + ".toml"),
                                       {.threads = settings.threads});
-  const std::vector<SmallObject> objects = load_objects(settings.folder, name);
+  const std::vector<SmallObject> objects = load_small_objects(settings.folder, name);
   const Image truth = make_truth(*prepared, objects, settings.threads);
   std::vector<Row> rows;
-  rows.push_back({"beam certified", make_beam_renderer(), 1});
-  if (settings.corners) rows.push_back({"beam corners", make_beam_renderer({.rule = BeamRule::corners}), 1});
-  for (const int samples : settings.path_samples) {
-    rows.push_back({fmt::format("path {}", samples), make_path_renderer(), std::uint32_t(samples)});
+  add_own_rows(settings, *prepared, truth, rows);
+  Image pov_truth;
+  if (povray) {
+    const PovJob job{
+        .program = *povray, .folder = folder, .scene = name, .threads = settings.threads};
+    pov_truth = make_pov_truth(job, scene_of(*prepared));
+    add_pov_rows(settings, job, pov_truth, rows);
   }
-  for (const Row& row : rows) {
-    RenderOptions options;
-    options.samples = {0, row.samples};
-    options.threads = settings.threads;
-    const std::clock_t start = std::clock();
-    const RenderResult result = row.renderer->render(*prepared, options);
-    const double cpu = double(std::clock() - start) / CLOCKS_PER_SEC;
-    fmt::print("{:<9} {:<15} {:>9} {:>9.5f} {:>11} {:>8.2f} {:>8.2f}\n", name, row.name,
-               count_missed(result.picture.color, truth, objects),
-               rmse(result.picture.color, truth), result.rays.total, result.seconds, cpu);
-    std::fflush(stdout);
+  render_in_turn(rows, settings.rounds);
+  print_rows(name, rows, objects);
+  if (povray) {
+    fmt::print("{:<8} {:<15} {:>7} {:>8.5f}\n", name, "POV truth, ours", "",
+               rmse(pov_truth, truth));
   }
 }
 
 }  // namespace
 
-int run_beam_table(const BeamTableSettings& settings) {
-  fmt::print("{:<9} {:<15} {:>9} {:>9} {:>11} {:>8} {:>8}\n", "scene", "renderer", "missed", "RMSE",
-             "rays", "seconds", "cpu s");
-  for (const char* scene : {"plate", "fence", "spheres"}) print_scene(settings, scene);
-  return 0;
+void run_beam_table(const BeamTableSettings& settings) {
+  std::optional<fs::path> povray;
+  if (settings.pov) {
+    povray = find_povray();
+    if (!povray) fmt::print("no povray on the PATH: no rows of POV-Ray\n");
+  }
+  const WorkFolder folder(settings.keep);
+  fmt::print("{:<8} {:<15} {:>7} {:>8} {:>11} {:>8} {:>8} {:>17}\n", "", "", "", "", "", "", "",
+             "beam's time/its");
+  fmt::print("{:<8} {:<15} {:>7} {:>8} {:>11} {:>8} {:>8} {:>8} {:>8}\n", "scene", "renderer",
+             "missed", "RMSE", "rays", "seconds", "cpu s", "seconds", "cpu s");
+  for (const std::string& scene : settings.scenes) {
+    run_scene(settings, scene, povray, folder.path());
+  }
 }
 
 }  // namespace arris::bench
