@@ -80,7 +80,7 @@ QuadricForm make_form(const ViewFrame& frame, const CsgQuadric& quadric) {
 }
 
 // Origin fixed: direction · ((a - o) × (b - o)). Direction fixed: the same for the point origin / weight, times weight:
-// weight d·(a × b) - origin · ((a - b) × d).
+// weight d·(a × b) + origin · ((a - b) × d).
 Linear make_side(const ViewFrame& frame, const BeamShape::Edge& edge) {
   const Vec3i a = to_intervals(edge.a), b = to_intervals(edge.b);
   const auto dot_linear = [](const LinearVec& v, const Vec3i& n) {
@@ -88,7 +88,7 @@ Linear make_side(const ViewFrame& frame, const BeamShape::Edge& edge) {
   };
   if (frame.direction_fixed) {
     const Vec3i d{frame.direction.x.c, frame.direction.y.c, frame.direction.z.c};
-    return frame.weight * dot(d, cross(a, b)) - dot_linear(frame.origin, cross(a - b, d));
+    return frame.weight * dot(d, cross(a, b)) + dot_linear(frame.origin, cross(a - b, d));
   }
   const Vec3i o{frame.origin.x.c, frame.origin.y.c, frame.origin.z.c};
   return dot_linear(frame.direction, cross(a - o, b - o));
