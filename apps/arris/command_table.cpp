@@ -63,7 +63,7 @@ CommandRow render_row() {
           "the picture: .png .jpg (tone-mapped), .exr .pfm (linear); - writes PNG to stdout"},
          {"--aov", "LIST",
           "more layers, separated by commas: albedo, normal, depth, object, rounded, bevel_fac "
-          "(path); coverage_lo, coverage_hi, uncertified (beam); part of an .exr, else beside the "
+          "(path); coverage_lo, coverage_hi, uncertified, regions (beam); part of an .exr, else beside the "
           "picture as .NAME.pfm"},
          {"--exposure", "STOPS", "brightness of .png and .jpg (default: the scene's, else 0)"},
          {"--stats", "FILE", "write times, counts and memory as JSON; - for stdout"}}},

@@ -51,14 +51,15 @@ class BeamTracer::Tracer {
     const double next_end = std::min(depth_end, tree.depth_end);
     if (tree.complete && add_light(tree, rect)) {
       for (double y = rect.y0; y < rect.y1; ++y) {
-        for (double x = rect.x0; x < rect.x1; ++x) add_pixel(tree, {x, y, x + 1, y + 1});
+        for (double x = rect.x0; x < rect.x1; ++x) add_pixel(tree, {x, y, x + 1, y + 1}, rect);
       }
     } else if (rect.width() > 1) {
       for (const Rect& part : quarters_of(rect)) visit(part, parts, next_end);
     } else {
       surfaces_.clear();
+      smallest_part_ = 1;
       for (const Rect& part : quarters_of(rect)) visit_part(part, parts, next_end);
-      finish_pixel(rect);
+      finish_pixel(rect, {rect.x0, rect.y0, rect.x0 + smallest_part_, rect.y0 + smallest_part_});
     }
   }
 
@@ -74,6 +75,7 @@ class BeamTracer::Tracer {
     const bool smallest = rect.width() <= least_region(parts);
     const bool complete = (tree.complete || smallest) && add_light(tree, rect);
     if (complete || smallest) {
+      smallest_part_ = std::min(smallest_part_, rect.width());
       add_ends(tree, areas_of(tree, rect), parts);
       add_lit_shares(tree, rect);
       return;
@@ -104,7 +106,7 @@ class BeamTracer::Tracer {
     return mirrors.add_mirrors(tree, rect, mirror_lists_, stats_.regions) && shadows;
   }
 
-  void add_pixel(const LookTree& tree, const Rect& pixel) {
+  void add_pixel(const LookTree& tree, const Rect& pixel, const Rect& region) {
     if (pixel.x0 >= shared_.width_px_ || pixel.y0 >= shared_.height_px_) return;
     AreaOptions options;
     for (int i = 0; i <= kCloserLooks; ++i) {
@@ -115,7 +117,7 @@ class BeamTracer::Tracer {
       options.least_side /= 4;
     }
     add_lit_shares(tree, pixel);
-    finish_pixel(pixel);
+    finish_pixel(pixel, region);
   }
 
   [[nodiscard]] bool is_certified() const {
@@ -293,7 +295,7 @@ class BeamTracer::Tracer {
     }
   }
 
-  void finish_pixel(const Rect& pixel) {
+  void finish_pixel(const Rect& pixel, const Rect& region) {
     BeamPixel out;
     out.x = int(pixel.x0);
     out.y = int(pixel.y0);
@@ -309,6 +311,8 @@ class BeamTracer::Tracer {
     out.coverage_lo = std::clamp(1 - nothing_hi, 0.0, 1.0);
     out.coverage_hi = std::clamp(1 - nothing_lo, 0.0, 1.0);
     out.certified = is_certified();
+    out.region_side = region.width();
+    out.begins_region = pixel.x0 == region.x0 || pixel.y0 == region.y0;
     out.surfaces = surfaces_;
     ++stats_.pixels;
     stats_.uncertified_pixels += out.certified ? 0 : 1;
@@ -320,6 +324,7 @@ class BeamTracer::Tracer {
   const std::function<void(const BeamPixel&)>& sink_;
   ShadowLists lists_;
   MirrorLists mirror_lists_;
+  double smallest_part_ = 1;
   std::vector<PixelSurface> surfaces_;
   std::unordered_map<Key, std::uint32_t, KeyHash> index_;  // of surfaces_, where they are many
   BeamStats stats_;

@@ -49,6 +49,8 @@ struct BeamPixel {
   int x = 0, y = 0;
   std::span<const PixelSurface> surfaces;
   double coverage_lo = 0, coverage_hi = 1;  // of all surfaces together
+  double region_side = 1;     // of the smallest region that it was cut into, or of the one that it is part of
+  bool begins_region = true;  // it is at the left or upper border of its region
   bool certified = true;  // no surface's bounds are wider than the tolerance, and no mirror is open
 };
 

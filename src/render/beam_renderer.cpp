@@ -20,6 +20,7 @@ namespace {
 constexpr const char* kCoverageLo = "coverage_lo";
 constexpr const char* kCoverageHi = "coverage_hi";
 constexpr const char* kUncertified = "uncertified";
+constexpr const char* kRegions = "regions";
 
 // What all tiles share.
 struct Job {
@@ -115,6 +116,18 @@ Rgb shade(const Job& job, const BeamPixel& pixel, const PixelSurface& surface,
   return direct + other * (1.0F / float(count));
 }
 
+// Blue for large regions, green for pixels, red for what was cut as far as it goes, white where that was not enough;
+// darker where regions begin: the paper's Image 2.
+Rgb region_color(const BeamPixel& pixel) {
+  if (!pixel.certified) return Rgb(1.0F);
+  constexpr double kLevels = 4;  // from a tile to a pixel
+  const double level = std::log2(1 / pixel.region_side);
+  const auto deep = float(std::clamp(level / 6, 0.0, 1.0));
+  const auto wide = float(std::clamp(-level / kLevels, 0.0, 1.0));
+  const Rgb color = level > 0 ? Rgb{deep, 1 - deep, 0} : Rgb{0, 1 - wide, wide};
+  return color * (pixel.begins_region ? 0.4F : 0.8F);
+}
+
 // Where the pictures of the layers that were asked for are.
 struct Layers {
   Picture picture;
@@ -122,6 +135,11 @@ struct Layers {
   void set(const BeamPixel& pixel, Rgb color) {
     for (int c = 0; c < 3; ++c) picture.color.at(pixel.x, pixel.y, c) = color[c];
     for (Layer& layer : picture.layers) {
+      if (layer.name == kRegions) {
+        const Rgb shown = region_color(pixel);
+        for (int c = 0; c < 3; ++c) layer.image.at(pixel.x, pixel.y, c) = shown[c];
+        continue;
+      }
       const double value = layer.name == kCoverageLo   ? pixel.coverage_lo
                            : layer.name == kCoverageHi ? pixel.coverage_hi
                                                        : (pixel.certified ? 0 : 1);
@@ -180,7 +198,7 @@ class BeamRenderer final : public Renderer {
   explicit BeamRenderer(const BeamSettings& settings) : settings_(settings) {}
 
   [[nodiscard]] std::vector<std::string> aovs() const override {
-    return {kCoverageLo, kCoverageHi, kUncertified};
+    return {kCoverageLo, kCoverageHi, kUncertified, kRegions};
   }
 
   [[nodiscard]] RenderResult render(const PreparedScene& scene,
@@ -195,7 +213,8 @@ class BeamRenderer final : public Renderer {
     Layers layers;
     layers.picture.color = Image(image.width_px, image.height_px, 3);
     for (const std::string& name : options.aovs) {
-      layers.picture.layers.push_back({name, Image(image.width_px, image.height_px, 1)});
+      const int channels = name == kRegions ? 3 : 1;
+      layers.picture.layers.push_back({name, Image(image.width_px, image.height_px, channels)});
     }
     // Four rays a region don't get better by smaller ones as bounds do.
     const double least = settings_.rule == BeamRule::corners ? 1.0 / 8 : BeamOptions{}.least_region;

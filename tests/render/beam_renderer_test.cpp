@@ -123,7 +123,8 @@ TEST(beam_renderer, fills_its_layers_and_counts) {
   const Scene scene = beam_scene();
   const auto renderer = make_beam_renderer();
   const RenderResult result = render(scene, *renderer, 1, renderer->aovs());
-  ASSERT_EQ(result.picture.layers.size(), 3U);
+  ASSERT_EQ(result.picture.layers.size(), 4U);
+  EXPECT_EQ(result.picture.layers[3].image.channels, 3);
   const Image& lo = result.picture.layers[0].image;
   const Image& hi = result.picture.layers[1].image;
   double area = 0;
