@@ -52,6 +52,7 @@ namespace {
 
 struct Placed {
   LitPlane lit;
+  std::uint32_t leaf = 0;
   std::optional<LookTree> seen_by_light;  // nothing: the light is behind
 };
 
@@ -119,12 +120,13 @@ bool ShadowLooker::add_light(LookTree& tree, const Rect& rect, std::uint32_t lig
   std::vector<Placed> looks;  // one for each plane, however often it is seen
   for (const std::uint32_t node : surfaces) {
     const BeamSurface surface = tree.nodes[node].seen.surface;
+    const std::uint32_t leaf = tree.nodes[node].seen.leaf;
     auto known = std::ranges::find_if(looks, [&](const Placed& p) {
-      return p.lit.solid == surface.solid && p.lit.plane == surface.index;
+      return p.lit.solid == surface.solid && p.lit.plane == surface.index && p.leaf == leaf;
     });
     if (known == looks.end()) {
       const LitPlane lit{surface.solid, surface.index};
-      looks.push_back({lit, look_from_light(lit, light, rect, lists)});
+      looks.push_back({lit, leaf, look_from_light(lit, leaf, light, rect, lists)});
       known = looks.end() - 1;
       ++regions;
       complete = complete && (!known->seen_by_light || known->seen_by_light->complete);
@@ -152,22 +154,92 @@ bool is_behind(const ConvexLeaf* convex, std::uint32_t plane, Sign light_side) {
 
 }  // namespace
 
-const ShadowLists::List& ShadowLooker::list_for(LitPlane lit, std::uint32_t light,
-                                                ShadowLists& lists) const {
-  const ShadowLists::Key key{light, lit.solid, lit.plane};
+namespace {
+
+// What lies between a light and a box, in the space of one solid.
+struct Shaft {
+  Box3d target;
+  bool is_directional = false;
+  Vec3d light;  // position, or the way to it
+
+  // May the box meet light + s (target - light) for an s in [0, 1], or target + s light for an s > 0? Each axis leaves
+  // an interval of s.
+  [[nodiscard]] bool meets(const Box3d& box) const {
+    double low = 0, high = is_directional ? kInfinity : 1;
+    for (int k = 0; k < 3; ++k) {
+      const double from = is_directional ? target.low[k] : light[k];
+      const double to = is_directional ? target.high[k] : light[k];
+      const double slope_low = is_directional ? light[k] : target.low[k] - light[k];
+      const double slope_high = is_directional ? light[k] : target.high[k] - light[k];
+      cut(from - box.high[k], slope_low, low, high);
+      cut(box.low[k] - to, -slope_high, low, high);
+    }
+    return low <= high;
+  }
+
+ private:
+  // To where value + s slope ≤ 0, with some slack for rounding.
+  static void cut(double value, double slope, double& low, double& high) {
+    constexpr double kSlack = 1e-9;
+    const double limit = -value / slope;
+    if (slope > 0) high = std::min(high, limit + kSlack * std::abs(limit) + kSlack);
+    if (slope < 0) low = std::max(low, limit - kSlack * std::abs(limit) - kSlack);
+    if (slope == 0 && value > 0) low = kInfinity;
+  }
+};
+
+// Of a beam between two depths.
+Box3d box_of_beam(const EyeRays& eye, const Rect& rect, double near, double far) {
+  Box3d box{Vec3d(kInfinity), Vec3d(-kInfinity)};
+  for (int i = 0; i < 8; ++i) {
+    const Vec2d at{(i & 1) != 0 ? rect.x1 : rect.x0, (i & 2) != 0 ? rect.y1 : rect.y0};
+    const Ray ray = ray_through(eye, at);
+    const Vec3d p = ray.origin + ray.direction * ((i & 4) != 0 ? far : near);
+    box = hull(box, {p, p});
+  }
+  return box;
+}
+
+}  // namespace
+
+// Of what of a leaf a tile sees.
+Box3d ShadowLooker::box_of_target(std::uint32_t solid, std::uint32_t leaf, const Rect& tile) const {
+  const Affine3d world_from_object = inverse(solids_[solid].object_from_world);
+  const Box3d& own = solids_[solid].shape->leaf_box(leaf);
+  if (!is_finite(own.low) || !is_finite(own.high)) return {Vec3d(-kInfinity), Vec3d(kInfinity)};
+  const Box3d box = box_of(map_cell(world_from_object, make_cell(own)));
+  // Depths along the view, from the corners of the box.
+  const Vec3d view = cross(eye_.step_x, eye_.step_y);
+  const double unit = dot(view, eye_.corner);
+  double near = kInfinity, far = 0;
+  for (const Vec3d& corner : corners_of(box)) {
+    const double depth = dot(view, corner - eye_.position) / unit;
+    near = std::min(near, depth);
+    far = std::max(far, depth);
+  }
+  const Box3d beam = box_of_beam(eye_, tile, std::max(near, 0.0), std::max(far, 0.0));
+  const Vec3d slack(1e-9 * (length(box.high - box.low) + length(beam.high - beam.low)));
+  const Box3d both = intersection(box, beam);
+  return {both.low - slack, both.high + slack};
+}
+
+const ShadowLists::List& ShadowLooker::list_for(LitPlane lit, std::uint32_t leaf,
+                                                std::uint32_t light, ShadowLists& lists) const {
+  const ShadowLists::Key key{light, lit.solid, lit.plane, leaf};
   const auto known = lists.lists_.find(key);
   if (known != lists.lists_.end()) return known->second;
   ShadowLists::List list{BeamView(solids_, eye_, lit, lights_[light], reach_), {}};
   const Sign light_side = side_of_light(lit, light);
+  const Box3d target = box_of_target(lit.solid, leaf, lists.tile_);
   std::vector<BeamPart> roots;
   for (std::uint32_t i = 0; i < solids_.size(); ++i) {
     const BeamShape& shape = *solids_[i].shape;
-    CsgExpression root = shape.root();
+    CsgExpression root = root_in_shaft(i, target, light);
     if (i == lit.solid && !root.is_decided()) {
       std::vector<Cover> covers;
-      for (const std::uint32_t leaf : root.leaves()) {
-        covers.push_back(is_behind(shape.convex(leaf), lit.plane, light_side) ? Cover::out
-                                                                            : Cover::on);
+      for (const std::uint32_t other : root.leaves()) {
+        covers.push_back(is_behind(shape.convex(other), lit.plane, light_side) ? Cover::out
+                                                                             : Cover::on);
       }
       root = root.prune(covers);
     }
@@ -176,6 +248,20 @@ const ShadowLists::List& ShadowLooker::list_for(LitPlane lit, std::uint32_t ligh
   const double end = depth_of(list.view.plane(lit.solid, lit.plane), lists.tile_);
   list.parts = prune_parts(list.view, roots, lists.tile_, end).parts;
   return lists.lists_.emplace(key, std::move(list)).first->second;
+}
+
+CsgExpression ShadowLooker::root_in_shaft(std::uint32_t solid, const Box3d& target,
+                                          std::uint32_t light) const {
+  const BeamSolid& s = solids_[solid];
+  if (!is_finite(target.low) || !is_finite(target.high)) return s.shape->root();
+  if (target.is_empty()) return CsgExpression(Cover::out);  // the tile does not see the leaf
+  const LightPlace& place = lights_[light];
+  Shaft shaft;
+  shaft.target = box_of(map_cell(s.object_from_world, make_cell(target)));
+  shaft.is_directional = place.is_directional;
+  shaft.light = place.is_directional ? -transform_vector(s.object_from_world, place.direction)
+                                     : transform_point(s.object_from_world, place.position);
+  return s.shape->root_near([&](const Box3d& box) { return shaft.meets(box); });
 }
 
 Sign ShadowLooker::side_of_light(LitPlane lit, std::uint32_t light) const {
@@ -188,13 +274,14 @@ Sign ShadowLooker::side_of_light(LitPlane lit, std::uint32_t light) const {
   return -sign_of(dot(plane.normal, transform_vector(solid.object_from_world, place.direction)));
 }
 
-std::optional<LookTree> ShadowLooker::look_from_light(LitPlane lit, std::uint32_t light,
-                                                      const Rect& rect, ShadowLists& lists) const {
+std::optional<LookTree> ShadowLooker::look_from_light(LitPlane lit, std::uint32_t leaf,
+                                                      std::uint32_t light, const Rect& rect,
+                                                      ShadowLists& lists) const {
   const BeamSolid& solid = solids_[lit.solid];
   const CsgPlane& plane = solid.shape->planes()[lit.plane];
   const Sign eye_side = side_of(plane, transform_point(solid.object_from_world, eye_.position));
   if (eye_side * side_of_light(lit, light) != Sign::positive) return std::nullopt;
-  const ShadowLists::List& list = list_for(lit, light, lists);
+  const ShadowLists::List& list = list_for(lit, leaf, light, lists);
   const double end = depth_of(list.view.plane(lit.solid, lit.plane), rect);
   const BeamList in_the_way = prune_parts(list.view, list.parts, rect, end);
   if (in_the_way.parts.empty()) return LookTree{{LookNode{}}, {}, true, end};  // nothing in the way

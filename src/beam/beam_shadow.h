@@ -28,7 +28,8 @@ class ShadowLists {
 
  private:
   friend class ShadowLooker;
-  using Key = std::tuple<std::uint32_t, std::uint32_t, std::uint32_t>;  // light, solid, plane
+  // light, solid, plane, leaf
+  using Key = std::tuple<std::uint32_t, std::uint32_t, std::uint32_t, std::uint32_t>;
   struct List {
     BeamView view;
     std::vector<BeamPart> parts;
@@ -69,9 +70,16 @@ class ShadowLooker {
                  std::uint64_t& regions) const;
   [[nodiscard]] Sign side_of_light(LitPlane lit, std::uint32_t light) const;
   // Nothing: the light is behind the plane.
-  [[nodiscard]] std::optional<LookTree> look_from_light(LitPlane lit, std::uint32_t light,
-                                                        const Rect& rect, ShadowLists& lists) const;
-  const ShadowLists::List& list_for(LitPlane lit, std::uint32_t light, ShadowLists& lists) const;
+  [[nodiscard]] std::optional<LookTree> look_from_light(LitPlane lit, std::uint32_t leaf,
+                                                        std::uint32_t light, const Rect& rect,
+                                                        ShadowLists& lists) const;
+  const ShadowLists::List& list_for(LitPlane lit, std::uint32_t leaf, std::uint32_t light,
+                                    ShadowLists& lists) const;
+  [[nodiscard]] Box3d box_of_target(std::uint32_t solid, std::uint32_t leaf,
+                                    const Rect& tile) const;
+  // What of a solid lies between the light and the box.
+  [[nodiscard]] CsgExpression root_in_shaft(std::uint32_t solid, const Box3d& target,
+                                            std::uint32_t light) const;
 
   std::span<const BeamSolid> solids_;
   EyeRays eye_;

@@ -54,6 +54,7 @@ BeamShape::BeamShape(const CsgTree& tree)
   std::uint32_t number = 0;
   for (auto& [leaf, parts] : volumes) parts.push_back(std::uint32_t(first_volume()) + number++);
   root_ = csg_.root().with_parities(volumes);
+  make_tree();
 }
 
 BeamShape::BeamShape(std::span<const MeshTriangle> triangles)
@@ -63,6 +64,13 @@ BeamShape::BeamShape(std::span<const MeshTriangle> triangles)
     if (add_facet(triangle, std::nullopt, known)) bounds_ = hull(bounds_, boxes_.back());
   }
   root_ = make_union(facets_.size());
+  make_tree();
+}
+
+void BeamShape::make_tree() {
+  std::vector<Box3d> boxes;
+  for (std::uint32_t leaf = 0; leaf < leaf_count(); ++leaf) boxes.push_back(leaf_box(leaf));
+  tree_ = LeafTree(root_, boxes);
 }
 
 bool BeamShape::add_facet(const MeshTriangle& triangle, std::optional<PlaneRef> plane,

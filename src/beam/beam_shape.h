@@ -13,12 +13,14 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <optional>
 #include <span>
 #include <variant>
 #include <vector>
 
+#include "beam/leaf_tree.h"
 #include "csg/csg_solid.h"
 
 namespace arris {
@@ -82,6 +84,10 @@ class BeamShape {
     return facet(leaf) != nullptr || (convex(leaf) != nullptr && face < convex(leaf)->planes.size());
   }
 
+  // Of root(), what matters where meets(box) holds for each box around the place.
+  [[nodiscard]] CsgExpression root_near(const std::function<bool(const Box3d&)>& meets) const {
+    return tree_.near(meets);
+  }
   // Where the ray meets a facet ahead of its origin.
   [[nodiscard]] std::optional<double> meet(const Facet& facet, const Ray& ray) const;
 
@@ -89,6 +95,7 @@ class BeamShape {
   using EdgePlaces = std::map<std::array<double, 6>, std::uint32_t>;
 
   [[nodiscard]] std::size_t first_volume() const { return csg_.leaf_count() + facets_.size(); }
+  void make_tree();
   // False: it has no area.
   bool add_facet(const MeshTriangle& triangle, std::optional<PlaneRef> plane, EdgePlaces& known);
 
@@ -100,6 +107,7 @@ class BeamShape {
   std::vector<const ClosedMesh*> volumes_;
   Box3d bounds_;
   CsgExpression root_;
+  LeafTree tree_;
 };
 
 // Where it stands.

@@ -205,6 +205,48 @@ CsgExpression CsgExpression::intersected_with(std::uint32_t leaf) const {
   return both;
 }
 
+std::vector<CsgExpression> CsgExpression::union_operands() const {
+  if (is_decided()) return {};
+  if (steps_.back().kind != Kind::unite) return {*this};
+  // Where the steps of each operand begin: those of the last operations on the stack.
+  std::vector<std::size_t> starts;
+  for (std::size_t i = 0; i + 1 < steps_.size(); ++i) {
+    const std::size_t taken = is_of_leaf(steps_[i]) ? 0 : steps_[i].value;
+    const std::size_t start = taken == 0 ? i : starts[starts.size() - taken];
+    starts.resize(starts.size() - taken);
+    starts.push_back(start);
+  }
+  std::vector<CsgExpression> operands;
+  starts.push_back(steps_.size() - 1);
+  for (std::size_t k = 0; k + 1 < starts.size(); ++k) {
+    CsgExpression& operand = operands.emplace_back();
+    operand.decided_ = Cover::on;
+    for (std::size_t i = starts[k]; i < starts[k + 1]; ++i) {
+      CsgStep step = steps_[i];
+      if (is_of_leaf(step)) step.value = leaves_[step.value];
+      operand.steps_.push_back(step);
+    }
+    operand.number_leaves();
+  }
+  return operands;
+}
+
+CsgExpression CsgExpression::unite(std::span<const CsgExpression* const> operands) {
+  CsgExpression all;
+  if (operands.empty()) return all;
+  if (operands.size() == 1) return *operands[0];
+  all.decided_ = Cover::on;
+  for (const CsgExpression* operand : operands) {
+    for (CsgStep step : operand->steps_) {
+      if (is_of_leaf(step)) step.value = operand->leaves_[step.value];
+      all.steps_.push_back(step);
+    }
+  }
+  all.steps_.push_back({Kind::unite, std::uint32_t(operands.size())});
+  all.number_leaves();
+  return all;
+}
+
 CsgExpression CsgExpression::with_parities(
     const std::map<std::uint32_t, std::vector<std::uint32_t>>& volumes) const {
   CsgExpression replaced;

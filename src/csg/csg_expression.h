@@ -50,6 +50,10 @@ class CsgExpression {
       const std::map<std::uint32_t, std::vector<std::uint32_t>>& volumes) const;
   // Precondition: not decided.
   [[nodiscard]] CsgExpression intersected_with(std::uint32_t leaf) const;
+  // Those of the outermost union; the expression itself if it is none; decided: nothing.
+  [[nodiscard]] std::vector<CsgExpression> union_operands() const;
+  // Precondition: none is decided.
+  static CsgExpression unite(std::span<const CsgExpression* const> operands);
   // `covers` by index of leaves().
   [[nodiscard]] CsgExpression prune(std::span<const Cover> covers) const;
   // `boxes` by index of leaves(). Contains the solid; infinite where a complement alone bounds it.
