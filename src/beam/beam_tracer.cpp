@@ -58,6 +58,7 @@ class BeamTracer::Tracer {
     } else {
       surfaces_.clear();
       smallest_part_ = 1;
+      pixel_rays_ = 0;
       for (const Rect& part : quarters_of(rect)) visit_part(part, parts, next_end);
       finish_pixel(rect, {rect.x0, rect.y0, rect.x0 + smallest_part_, rect.y0 + smallest_part_});
     }
@@ -85,7 +86,8 @@ class BeamTracer::Tracer {
     }
   }
 
-  // Outlines of leaves that aren't convex stay open however small the regions are.
+  // Outlines of leaves that aren't convex stay open however small the regions are; so do pixels with much that is
+  // unknown.
   [[nodiscard]] double least_region(const std::vector<BeamPart>& parts) const {
     const bool any_whole = std::ranges::any_of(parts, [&](const BeamPart& part) {
       return std::ranges::any_of(part.expression.leaves(), [&](std::uint32_t leaf) {
@@ -93,8 +95,10 @@ class BeamTracer::Tracer {
       });
     });
     const BeamOptions& options = shared_.options_;
-    return any_whole ? std::max(options.least_region, options.least_open_region)
-                     : options.least_region;
+    double least = options.least_region;
+    if (any_whole) least = std::max(least, options.least_open_region);
+    if (pixel_rays_ > options.many_rays) least = std::max(least, options.least_crowded_region);
+    return least;
   }
 
   // Shadows, and what is seen in mirrors.
@@ -207,6 +211,7 @@ class BeamTracer::Tracer {
       for (const BeamPart& part : parts) add_all_faces(part, open);
     }
     ++stats_.rays;
+    ++pixel_rays_;
     open.seen = seen_by_ray(parts, end.sample);
     open.hi = 0;
     open.estimate = open.sample_weight = end.estimate;
@@ -325,6 +330,7 @@ class BeamTracer::Tracer {
   ShadowLists lists_;
   MirrorLists mirror_lists_;
   double smallest_part_ = 1;
+  std::uint32_t pixel_rays_ = 0;  // that the pixel has taken so far
   std::vector<PixelSurface> surfaces_;
   std::unordered_map<Key, std::uint32_t, KeyHash> index_;  // of surfaces_, where they are many
   BeamStats stats_;

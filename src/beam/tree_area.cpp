@@ -184,9 +184,10 @@ class Integrator {
 
   // Of a regular grid, those that are on an end's side of all signs.
   void add_samples(const Rect& rect) {
-    for (int k = 0; k < kSampleGrid * kSampleGrid; ++k) {
-      const Vec2d at{rect.x0 + rect.width() * (k % kSampleGrid + 0.5) / kSampleGrid,
-                     rect.y0 + rect.height() * (k / kSampleGrid + 0.5) / kSampleGrid};
+    const int side = std::clamp(int(std::ceil(rect.width() * kSampleGrid)), 1, kSampleGrid);
+    for (int k = 0; k < side * side; ++k) {
+      const Vec2d at{rect.x0 + rect.width() * (k % side + 0.5) / side,
+                     rect.y0 + rect.height() * (k / side + 0.5) / side};
       const std::uint32_t node = descend(0, {at.x, at.y, at.x, at.y});
       if (is_end(node)) of_node_[node].area.samples.push_back({at, rect.area()});
     }

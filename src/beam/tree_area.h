@@ -28,7 +28,7 @@ struct EndArea {
   std::vector<AreaSample> samples;
 };
 
-inline constexpr int kSampleGrid = 8;  // points a side
+inline constexpr int kSampleGrid = 8;  // points a pixel and side
 
 struct AreaOptions {
   double tolerance = 1.0 / 4096;  // of hi - lo, per unit of a piece's side
