@@ -2,10 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <optional>
 
 namespace arris {
 namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 // A half side that reaches both ends from the rounded middle.
 double half_side(double low, double high, double middle) {
@@ -27,18 +30,44 @@ struct Centered {
   Interval xx, xy, yy;     // times half sides
 };
 
+// A number and how far the true one may be from it. What this file spends its time on: one product instead of the four
+// of intervals. `size` bounds all that was added up, of which rounding takes a part at the end.
+struct Ball {
+  double value = 0, radius = 0, size = 0;
+
+  Ball() = default;
+  explicit Ball(Interval a)
+      : value(a.lo * 0.5 + a.hi * 0.5), radius(a.hi * 0.5 - a.lo * 0.5), size(std::abs(value)) {}
+  friend Ball operator+(const Ball& a, const Ball& b) {
+    return {a.value + b.value, a.radius + b.radius, a.size + b.size};
+  }
+  friend Ball operator*(const Ball& a, double s) {
+    return {a.value * s, a.radius * std::abs(s), a.size * std::abs(s)};
+  }
+  // Fewer than 16 operations lie behind each number, and each is off by less than 1.2e-16 of it.
+  [[nodiscard]] Interval to_interval() const {
+    constexpr double kRounding = 4e-15;
+    const double reach = radius + kRounding * (size + radius) + std::numeric_limits<double>::min();
+    if (!(reach < kInfinity)) return {-kInfinity, kInfinity};
+    return {value - reach, value + reach};
+  }
+
+ private:
+  Ball(double value_, double radius_, double size_) : value(value_), radius(radius_), size(size_) {}
+};
+
 Centered center(const Quadratic& p, const Rect& rect) {
   const double x = rect.middle_x(), y = rect.middle_y();
   Centered c{};
   c.hx = half_side(rect.x0, rect.x1, x);
   c.hy = half_side(rect.y0, rect.y1, y);
-  const Interval ix(x), iy(y), hx(c.hx), hy(c.hy);
-  c.value = p.c + ix * (p.x + p.xx * ix + p.xy * iy) + iy * (p.y + p.yy * iy);
-  c.dx = (p.x + Interval(2) * p.xx * ix + p.xy * iy) * hx;
-  c.dy = (p.y + Interval(2) * p.yy * iy + p.xy * ix) * hy;
-  c.xx = p.xx * hx * hx;
-  c.xy = p.xy * hx * hy;
-  c.yy = p.yy * hy * hy;
+  const Ball px(p.x), py(p.y), xx(p.xx), xy(p.xy), yy(p.yy);
+  c.value = (Ball(p.c) + (px + xx * x + xy * y) * x + (py + yy * y) * y).to_interval();
+  c.dx = ((px + xx * (2 * x) + xy * y) * c.hx).to_interval();
+  c.dy = ((py + yy * (2 * y) + xy * x) * c.hy).to_interval();
+  c.xx = (xx * c.hx * c.hx).to_interval();
+  c.xy = (xy * c.hx * c.hy).to_interval();
+  c.yy = (yy * c.hy * c.hy).to_interval();
   return c;
 }
 
