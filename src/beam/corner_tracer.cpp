@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <map>
+#include <memory>
 #include <optional>
 #include <tuple>
 #include <utility>
@@ -26,7 +27,7 @@ std::array<Rect, 4> quarters_of(const Rect& r) {
 // A part of the picture under way.
 struct BeamRegion {
   Rect rect;
-  std::vector<BeamPart> parts;
+  std::shared_ptr<const std::vector<BeamPart>> parts;
   bool is_uniform = false;          // for the eye
   std::optional<SeenSurface> seen;  // of a uniform one
   RegionLights lights;              // likewise
@@ -86,15 +87,15 @@ class CornerTracer::Tracer {
 
   // In the parts of a uniform region only its lights are tested again.
   BeamRegion look(const BeamRegion& above, const Rect& rect) {
-    BeamRegion region{rect, {}, above.is_uniform, above.seen, above.lights};
-    if (above.is_uniform) {
-      region.parts = above.parts;
-    } else {
+    BeamRegion region = above;
+    region.rect = rect;
+    if (!above.is_uniform) {
       ++stats_.regions;
-      region.parts = parts_near(shared_.solids_, above.parts, shared_.beam_of(rect));
-      region.is_uniform = is_uniform(region.parts, rect);
+      region.parts = std::make_shared<const std::vector<BeamPart>>(
+          parts_near(shared_.solids_, *above.parts, shared_.beam_of(rect)));
+      region.is_uniform = is_uniform(*region.parts, rect);
       if (!region.is_uniform) return region;
-      if (!region.parts.empty()) region.seen = seen_at(region.parts, {rect.x0, rect.y0});
+      if (!region.parts->empty()) region.seen = seen_at(*region.parts, {rect.x0, rect.y0});
     }
     const std::optional<HitPatch> patch = find_patch(region);
     if (!above.is_uniform && patch) region.lights = lights_.start(*patch);
@@ -112,7 +113,7 @@ class CornerTracer::Tracer {
     std::array<Vec3d, 4> points;
     const std::array<Vec2d, 4> corners = corners_of(region.rect);
     for (std::size_t i = 0; i < 4; ++i) {
-      const std::optional<RaySight>& sight = see(region.parts, corners[i]);
+      const std::optional<RaySight>& sight = see(*region.parts, corners[i]);
       if (!sight || sight->seen != *region.seen) return std::nullopt;
       const Ray ray = ray_through(shared_.eye_, corners[i]);
       points[i] = ray.origin + ray.direction * sight->depth;
@@ -146,7 +147,7 @@ class CornerTracer::Tracer {
     const std::array<Vec2d, 4> corners = corners_of(rect);
     for (std::size_t i = 0; i < 4; ++i) {
       PixelSurface surface;
-      surface.seen = seen_at(region.parts, corners[i]);
+      surface.seen = seen_at(*region.parts, corners[i]);
       surface.estimate = surface.hi = rect.area() / 4;
       surface.lo = region.is_settled() ? surface.hi : 0;
       surface.sample = corners[i];
@@ -252,7 +253,8 @@ std::vector<BeamTile> CornerTracer::make_tiles() const {
 BeamStats CornerTracer::trace_tile(const BeamTile& tile,
                                    const std::function<void(const BeamPixel&)>& sink) const {
   Tracer tracer(*this, tile.rect, sink);
-  tracer.visit({tile.rect, tile.parts, false, {}, {}}, tile.rect);
+  const auto parts = std::make_shared<const std::vector<BeamPart>>(tile.parts);
+  tracer.visit({tile.rect, parts, false, {}, {}}, tile.rect);
   return tracer.stats();
 }
 

@@ -47,7 +47,7 @@ Vec3d point_at(const BeamScene& scene, const PixelSurface& s) {
   return ray.origin + ray.direction * see(scene, s.sample.x, s.sample.y)->depth;
 }
 
-// Of the segment to the light, or of the ray: how much of it is in kBox made wider by `margin`.
+// Does the way to the light pass kBox made wider by `margin`?
 bool is_in_shadow(const LightPlace& light, Vec3d p, double margin) {
   const Vec3d way = light.is_directional ? -light.direction * 100.0 : light.position - p;
   double from = 0, to = 1;
@@ -86,21 +86,23 @@ TEST(corner_tracer, no_light_leaks_under_a_box) {
   for (const Vec3d from : {Vec3d{0, 0, 10}, Vec3d{8, -3, 5}, Vec3d{6, 6, 0.7}}) {
     const BeamScene scene = box_scene(from);
     int known = 0, wrong = 0, dark = 0;
-    trace(scene, kLights, [&](const BeamPixel& pixel) {
-      for (const PixelSurface& s : pixel.surfaces) {
-        if (!s.seen || s.seen->solid != 0) continue;
-        const Vec3d p = point_at(scene, s);
-        for (unsigned i = 0; i < 2; ++i) {
-          if ((s.lit_known >> i & 1U) == 0) continue;
-          const bool is_lit = (s.lit >> i & 1U) != 0;
-          const bool at_edge =
-              is_in_shadow(kLights[i], p, 1e-6) != is_in_shadow(kLights[i], p, -1e-6);
-          ++known;
-          dark += is_lit ? 0 : 1;
-          wrong += !at_edge && is_lit == is_in_shadow(kLights[i], p, 0) ? 1 : 0;
-        }
-      }
-    });
+    trace(scene, kLights,
+          [&](const BeamPixel& pixel) {
+            for (const PixelSurface& s : pixel.surfaces) {
+              if (!s.seen || s.seen->solid != 0) continue;
+              const Vec3d p = point_at(scene, s);
+              for (unsigned i = 0; i < 2; ++i) {
+                if ((s.lit_known >> i & 1U) == 0) continue;
+                const bool is_lit = (s.lit >> i & 1U) != 0;
+                const bool at_edge =
+                    is_in_shadow(kLights[i], p, 1e-6) != is_in_shadow(kLights[i], p, -1e-6);
+                ++known;
+                dark += is_lit ? 0 : 1;
+                wrong += !at_edge && is_lit == is_in_shadow(kLights[i], p, 0) ? 1 : 0;
+              }
+            }
+          },
+          {.least_region = 1.0 / 16});
     EXPECT_EQ(wrong, 0);
     EXPECT_GT(dark, known / 20);
   }
@@ -212,8 +214,8 @@ TEST(corner_tracer, lights_of_curved_surfaces_are_mostly_those_of_shadow_rays) {
               }
             }
           },
-          {.least_region = 1.0 / 8});
-    EXPECT_LT(wrong, known / 200) << dark << " dark";
+          {.least_region = 1.0 / 4});
+    EXPECT_LE(wrong, known / 1000);
     EXPECT_GT(known, all / 2);
     EXPECT_GT(dark, known / 20);
   }
