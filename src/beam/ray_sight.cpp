@@ -15,11 +15,12 @@ struct Toggle {
   std::uint32_t slot = 0, face = 0;
 };
 
-// Of one part: the expression's leaves toggled from the ray's origin on.
+// Of one part: the expression's leaves toggled along the ray from a depth on.
 class PartSight {
  public:
-  PartSight(std::uint32_t index, const BeamShape& shape, const CsgExpression& expression)
-      : index_(index), shape_(shape), expression_(expression) {}
+  PartSight(std::uint32_t index, const BeamShape& shape, const CsgExpression& expression,
+            double from)
+      : index_(index), shape_(shape), expression_(expression), from_(from) {}
 
   std::optional<RaySight> find(const Ray& ray) {
     inside_.assign(expression_.leaves().size(), 0);
@@ -47,17 +48,18 @@ class PartSight {
   void collect(std::uint32_t slot, const Ray& ray) {
     const std::uint32_t leaf = expression_.leaves()[slot];
     if (const Facet* facet = shape_.facet(leaf)) {
-      if (const auto t = shape_.meet(*facet, ray)) toggles_.push_back({*t, slot, 0});
+      const std::optional<double> t = shape_.meet(*facet, ray);
+      if (t && *t > from_) toggles_.push_back({*t, slot, 0});
       return;
     }
     if (const ClosedMesh* volume = shape_.volume(leaf)) {
-      inside_[slot] = volume->contains(ray.origin) ? 1 : 0;
+      inside_[slot] = volume->contains(ray.origin + ray.direction * from_) ? 1 : 0;
       return;
     }
     thread_local LeafCrossings crossings;
     const CsgSolid& csg = shape_.csg();
     for (const Crossing& c : crossings.find(csg.leaf(leaf), csg.surfaces(), ray)) {
-      if (c.t <= 0) {
+      if (c.t <= from_) {
         inside_[slot] ^= 1U;
       } else if (std::isfinite(c.t)) {
         toggles_.push_back({c.t, slot, c.face});
@@ -80,6 +82,7 @@ class PartSight {
   std::uint32_t index_;
   const BeamShape& shape_;
   const CsgExpression& expression_;
+  double from_;
   std::vector<std::uint8_t> inside_;
   std::vector<Toggle> toggles_;
 };
@@ -87,14 +90,14 @@ class PartSight {
 }  // namespace
 
 std::optional<RaySight> see(std::span<const BeamSolid> solids, const std::vector<BeamPart>& parts,
-                            const Ray& world) {
+                            const Ray& world, double from) {
   std::optional<RaySight> first;
   for (const BeamPart& part : parts) {
     const BeamSolid& solid = solids[part.solid];
     const Ray ray{transform_point(solid.object_from_world, world.origin),
                   transform_vector(solid.object_from_world, world.direction)};
     const std::optional<RaySight> sight =
-        PartSight(part.solid, *solid.shape, part.expression).find(ray);
+        PartSight(part.solid, *solid.shape, part.expression, from).find(ray);
     if (sight && (!first || sight->depth < first->depth)) first = sight;
   }
   return first;

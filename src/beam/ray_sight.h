@@ -16,8 +16,8 @@ struct RaySight {
   double depth = 0;  // in lengths of the ray's direction
 };
 
-// The first surface along a world ray.
+// The first surface along a world ray, beyond the depth `from`.
 std::optional<RaySight> see(std::span<const BeamSolid> solids, const std::vector<BeamPart>& parts,
-                            const Ray& world);
+                            const Ray& world, double from = 0);
 
 }  // namespace arris

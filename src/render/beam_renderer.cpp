@@ -226,7 +226,8 @@ class BeamRenderer final : public Renderer {
     const auto render_with = [&](const auto& tracer) { return render_tiles(job, tracer, layers); };
     const std::vector<TileCounts> counts =
         settings_.rule == BeamRule::corners
-            ? render_with(CornerTracer(beams.solids(), beams.eye(), image.width_px, image.height_px, beam))
+            ? render_with(CornerTracer(beams.solids(), beams.eye(), image.width_px, image.height_px,
+                                       beam, lights))
             : render_with(
                   BeamTracer(beams.solids(), beams.eye(), image.width_px, image.height_px, beam,
                              lights));
