@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <map>
@@ -174,6 +175,118 @@ TEST(region_look, ends_are_what_rays_see_of_meshes) {
     ASSERT_FALSE(HasFatalFailure()) << i;
   }
   expect_all_kinds(tally);
+}
+
+// Is the ray inside the leaf at depths in turn? Whole leaves may be left and entered again.
+struct Inside {
+  bool starts = false;
+  std::vector<double> changes;  // ascending
+
+  [[nodiscard]] bool at(double depth) const {
+    const auto before = std::ranges::lower_bound(changes, depth) - changes.begin();
+    return starts != (before % 2 == 1);
+  }
+};
+Inside inside_of(const BeamShape& shape, std::uint32_t leaf, const Ray& ray) {
+  Inside inside;
+  if (const Facet* facet = shape.facet(leaf)) {
+    if (const auto t = shape.meet(*facet, ray)) inside.changes.push_back(*t);
+    return inside;
+  }
+  LeafCrossings crossings;
+  for (const Crossing& c : crossings.find(shape.csg().leaf(leaf), shape.csg().surfaces(), ray)) {
+    if (c.t <= 0) inside.starts = !inside.starts;
+    if (c.t > 0 && std::isfinite(c.t)) inside.changes.push_back(c.t);
+  }
+  std::ranges::sort(inside.changes);
+  return inside;
+}
+
+// Sure to be inside, sure to be outside, or nothing is said.
+Cover cover_at(const std::optional<LeafSpan>& span, double depth) {
+  if (!span || (!span->starts_inside && depth < span->enter.lo) || depth > span->leave.hi) {
+    return Cover::out;
+  }
+  const bool entered = span->starts_inside || depth > span->enter.hi;
+  return span->certain && entered && depth < span->leave.lo ? Cover::in : Cover::on;
+}
+
+void check_span(const BeamScene& scene, const BeamView& view, std::uint32_t leaf, const Rect& rect,
+                CsgRandom& random, std::array<int, 3>& covers) {
+  const BeamShape& shape = view.shape(0);
+  const std::vector<Assumption> none;
+  const auto span = make_span(view, {0, leaf}, kInfinity, SignOracle(rect, none));
+  for (int n = 0; n < 6; ++n) {
+    const Ray world = ray_through(scene.eye, random_point(random, rect));
+    const Affine3d& m = scene.placed[0].object_from_world;
+    const Inside inside = inside_of(
+        shape, leaf, {transform_point(m, world.origin), transform_vector(m, world.direction)});
+    std::vector<double> depths;
+    for (int j = 0; j < 8; ++j) depths.push_back(uniform(random, 0, 8));
+    // Where the bounds are, just beyond them, and the middles between crossings.
+    for (std::size_t c = 1; c < inside.changes.size(); ++c) {
+      depths.push_back((inside.changes[c - 1] + inside.changes[c]) / 2);
+    }
+    for (const double end :
+         span ? std::vector{span->enter.lo, span->enter.hi, span->leave.lo, span->leave.hi}
+              : std::vector<double>{}) {
+      depths.insert(depths.end(), {end * (1 - 1e-6), end * (1 + 1e-6)});
+    }
+    for (const double depth : depths) {
+      const bool near_change = std::ranges::any_of(inside.changes, [&](double change) {
+        return std::abs(change - depth) < 1e-7 * (1 + depth);
+      });
+      if (!std::isfinite(depth) || near_change) continue;
+      const Cover cover = cover_at(span, depth);
+      ++covers[std::size_t(cover)];
+      ASSERT_TRUE(cover == Cover::on || inside.at(depth) == (cover == Cover::in))
+          << "leaf " << leaf << " at " << depth;
+    }
+  }
+}
+
+TEST(region_look, spans_hold_where_rays_are_inside_leaves) {
+  CsgRandom random(5);
+  std::array<int, 3> covers{};
+  for (int i = 0; i < 66; ++i) {
+    BeamScene scene = random_scene(random, i);
+    CsgTree tree = one_leaf(random_primitive(random, i % kPrimitiveKinds));
+    tree.leaves[0].object_from_primitive = random_placement(random, 0.5);
+    scene.add(tree);
+    const BeamShape& shape = scene.shapes[0];
+    const BeamView view(scene.placed, scene.eye);
+    for (int k = 0; k < 12; ++k) {
+      const Rect rect = random_part(random, {0, 0, 8, 8}, std::pow(10, uniform(random, -2, 0.5)));
+      for (const std::uint32_t leaf : shape.root().leaves()) {
+        if (shape.volume(leaf) != nullptr) continue;
+        check_span(scene, view, leaf, rect, random, covers);
+        ASSERT_FALSE(HasFatalFailure()) << i;
+      }
+    }
+  }
+  for (const int times : covers) EXPECT_GT(times, 10000);
+}
+
+// A thin part before a thick one: slices find the thick one first, and what is between is outside.
+TEST(region_look, spans_end_where_a_leaf_is_left_for_the_first_time) {
+  int thin = 0;
+  for (int i = 0; i < 60; ++i) {
+    BeamScene scene;
+    scene.width = scene.height = 8;
+    scene.add(one_leaf(CsgTorus{1, 0.3}));
+    // Through the upper part of the first tube and the middle of the second.
+    scene.eye = look_at({0, -5, 0.3 + 0.01 * i}, {0, 1, 0}, 20, 8, 8);
+    const BeamView view(scene.placed, scene.eye);
+    const Rect rect{3.9999, 3.9999, 4.0001, 4.0001};
+    const Inside inside = inside_of(scene.shapes[0], 0, ray_through(scene.eye, {4, 4}));
+    const std::vector<Assumption> none;
+    const auto span = make_span(view, {0, 0}, kInfinity, SignOracle(rect, none));
+    ASSERT_TRUE(span && span->certain) << i;
+    if (inside.changes.size() < 4 || span->enter.hi > inside.changes[1]) continue;
+    EXPECT_LE(span->leave.lo, inside.changes[1] + 1e-4) << i;
+    ++thin;
+  }
+  EXPECT_GT(thin, 20);
 }
 
 // What stands on a floor, as a light sees it.
