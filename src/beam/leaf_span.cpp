@@ -129,6 +129,8 @@ class SpanMaker {
     for (; ratio > 2 && span_.enter.hi > span_.enter.lo; ratio /= 16) {
       const Slices closer = slice(span_.enter);
       if (!closer.first_on) break;
+      // What is inside here may end before what was known to be inside begins.
+      if (closer.first_in && closer.in_end < span_.enter.hi) span_.leave.lo = closer.in_end;
       span_.enter = {*closer.first_on, closer.first_in.value_or(span_.enter.hi)};
     }
     return true;

@@ -130,7 +130,7 @@ Interval value_at(const Polynomial& p, Point at) {
 }
 
 // `scale`: what the terms that cancel in the value may be. The truth is a long double: a little may be lost there too.
-constexpr Real kTruthRounding = 1e-17L, kTightness = 1e-13L;
+constexpr Real kTruthRounding = 1e-18L, kTightness = 1e-13L;
 testing::AssertionResult holds_closely(Interval range, Real truth, Real scale) {
   const Real slack = kTruthRounding * scale;
   if (!(Real(range.lo) - slack <= truth && truth <= Real(range.hi) + slack)) {
@@ -148,7 +148,7 @@ Real square_of(Real x) {
 }
 // Coordinates along the ray, and in the frame of the quadric, are below these.
 Real scale_of(const ViewRay& ray) {
-  return 100 * (1 + length(ray.origin)) * (1 + length(ray.direction)) * (1 + ray.weight);
+  return (1 + length(ray.origin)) * (1 + length(ray.direction)) * (1 + ray.weight);
 }
 Real scale_of(const ViewRay& ray, const CsgQuadric& q) {
   const Mat3d& m = q.unit_from_object.linear;
