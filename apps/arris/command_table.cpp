@@ -63,7 +63,8 @@ CommandRow render_row() {
           "the picture: .png .jpg (tone-mapped), .exr .pfm (linear); - writes PNG to stdout"},
          {"--aov", "LIST",
           "more layers, separated by commas: albedo, normal, depth, object, rounded, bevel_fac "
-          "(path); coverage_lo, coverage_hi, uncertified, regions (beam); part of an .exr, else beside the "
+          "(path); coverage_lo, coverage_hi, uncertified, regions (beam); part of an .exr, else "
+          "beside the "
           "picture as .NAME.pfm"},
          {"--exposure", "STOPS", "brightness of .png and .jpg (default: the scene's, else 0)"},
          {"--stats", "FILE", "write times, counts and memory as JSON; - for stdout"}}},
@@ -78,13 +79,15 @@ CommandRow render_row() {
           "only these samples of the sequence; arris merge joins such .exr parts, which hold their "
           "exact sums besides, to the bytes of the whole"},
          {"--integrator", "path|beam",
-          "path: path tracing; beam: nothing that is small is lost, with certain bounds on what each "
+          "path: path tracing; beam: nothing that is small is lost, with certain bounds on what "
+          "each "
           "pixel shows (default: path)"},
          {"--beam-rule", "certified|corners",
           "how beams find uniform regions; certified: by bounds that hold; corners: by four rays, "
           "as in the paper of 1996, for comparison (default: certified)"},
          {"--light-beams", "N",
-          "beam: each area light is N x N point lights, whose shadows have no noise; 0: it is sampled "
+          "beam: each area light is N x N point lights, whose shadows have no noise; 0: it is "
+          "sampled "
           "(default: 0)"}}},
        input_group(),
        camera_group(),

@@ -107,7 +107,8 @@ void check_beam_options(const Arguments& arguments) {
     throw Error(Error::Kind::input, option,
                 "can't be used with --integrator beam, which makes its picture in one pass; leave "
                 "it out or use --integrator path");
-  }}
+  }
+}
 
 std::vector<std::string> parse_aovs(const Arguments& arguments, Integrator integrator) {
   const auto given = find_given(arguments, "--aov");

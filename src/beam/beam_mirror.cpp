@@ -42,8 +42,7 @@ bool MirrorLooker::add_mirrors(LookTree& tree, const Rect& rect, MirrorLists& li
   // Nodes that take the place of a mirror, or are added, are looked at in their turn.
   for (std::uint32_t i = 0; i < tree.nodes.size();) {
     const LookNode mirror = tree.nodes[i];
-    const bool deep =
-        mirror.mirrors != 0 && lists.chain(mirror.mirrors).size() >= kMostMirrors;
+    const bool deep = mirror.mirrors != 0 && lists.chain(mirror.mirrors).size() >= kMostMirrors;
     if (deep || mirror.mirror_open || !is_mirror(mirror)) {
       ++i;
       continue;

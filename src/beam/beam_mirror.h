@@ -34,7 +34,9 @@ class MirrorLists {
   [[nodiscard]] const MirrorChain& chain(std::uint32_t mirrors) const {
     return lists_[mirrors - 1].chain;
   }
-  [[nodiscard]] const BeamView& view(std::uint32_t mirrors) const { return lists_[mirrors - 1].view; }
+  [[nodiscard]] const BeamView& view(std::uint32_t mirrors) const {
+    return lists_[mirrors - 1].view;
+  }
   [[nodiscard]] const EyeRays& eye(std::uint32_t mirrors) const { return lists_[mirrors - 1].eye; }
 
  private:

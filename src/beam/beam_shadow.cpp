@@ -43,10 +43,7 @@ double diameter_of(std::span<const BeamSolid> solids) {
 
 ShadowLooker::ShadowLooker(std::span<const BeamSolid> solids, const EyeRays& eye,
                            std::span<const LightPlace> lights)
-    : solids_(solids),
-      eye_(eye),
-      lights_(lights),
-      reach_(2 * diameter_of(solids)) {}
+    : solids_(solids), eye_(eye), lights_(lights), reach_(2 * diameter_of(solids)) {}
 
 namespace {
 
@@ -79,8 +76,7 @@ void splice(LookTree& tree, std::uint32_t at, std::uint32_t bit,
 
 }  // namespace
 
-std::vector<std::uint32_t> ShadowLooker::find_lit(const LookTree& tree,
-                                                  const Unlit& unlit) const {
+std::vector<std::uint32_t> ShadowLooker::find_lit(const LookTree& tree, const Unlit& unlit) const {
   std::vector<std::uint32_t> lit;
   for (std::uint32_t i = 0; i < tree.nodes.size(); ++i) {
     const LookNode& node = tree.nodes[i];
@@ -134,9 +130,8 @@ bool ShadowLooker::add_light(LookTree& tree, const Rect& rect, std::uint32_t lig
     splice(tree, node, bit, known->seen_by_light);
   }
   // What stands in their places now, and what was added below.
-  std::erase_if(surfaces, [&](std::uint32_t i) {
-    return tree.nodes[i].kind != LookNode::Kind::surface;
-  });
+  std::erase_if(surfaces,
+                [&](std::uint32_t i) { return tree.nodes[i].kind != LookNode::Kind::surface; });
   for (std::uint32_t i = first_new; i < tree.nodes.size(); ++i) {
     if (tree.nodes[i].kind == LookNode::Kind::surface) surfaces.push_back(i);
   }
@@ -148,8 +143,8 @@ namespace {
 // A leaf that ends at the plane and lies behind it is not in the light's way.
 bool is_behind(const ConvexLeaf* convex, std::uint32_t plane, Sign light_side) {
   return convex != nullptr && std::ranges::any_of(convex->planes, [&](PlaneRef ref) {
-    return ref.plane == plane && (light_side == Sign::positive) == !ref.flipped;
-  });
+           return ref.plane == plane && (light_side == Sign::positive) == !ref.flipped;
+         });
 }
 
 }  // namespace
@@ -239,7 +234,7 @@ const ShadowLists::List& ShadowLooker::list_for(LitPlane lit, std::uint32_t leaf
       std::vector<Cover> covers;
       for (const std::uint32_t other : root.leaves()) {
         covers.push_back(is_behind(shape.convex(other), lit.plane, light_side) ? Cover::out
-                                                                             : Cover::on);
+                                                                               : Cover::on);
       }
       root = root.prune(covers);
     }

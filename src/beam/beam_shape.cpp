@@ -9,7 +9,8 @@ namespace arris {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr Box3d kEverywhere{{-kInfinity, -kInfinity, -kInfinity}, {kInfinity, kInfinity, kInfinity}};
+constexpr Box3d kEverywhere{{-kInfinity, -kInfinity, -kInfinity},
+                            {kInfinity, kInfinity, kInfinity}};
 
 std::array<double, 6> place_of(Vec3d a, Vec3d b) {
   return {a.x, a.y, a.z, b.x, b.y, b.z};
@@ -95,8 +96,8 @@ bool BeamShape::add_facet(const MeshTriangle& triangle, std::optional<PlaneRef> 
   }
   facet.plane = *plane;
   facets_.push_back(facet);
-  boxes_.push_back({min(corners[0], min(corners[1], corners[2])),
-                    max(corners[0], max(corners[1], corners[2]))});
+  boxes_.push_back(
+      {min(corners[0], min(corners[1], corners[2])), max(corners[0], max(corners[1], corners[2]))});
   return true;
 }
 

@@ -34,7 +34,7 @@ struct MeshTriangle {
 };
 
 struct Facet {
-  PlaneRef plane;                        // not flipped: its normal is where the corners turn counter-clockwise
+  PlaneRef plane;  // not flipped: its normal is where the corners turn counter-clockwise
   std::array<std::uint32_t, 3> edges{};  // of the shape
   std::array<bool, 3> turned{};          // the edge runs against the facet's turn
   std::uint32_t triangle = 0;            // MeshTriangle::number, or that of the CSG leaf's mesh
@@ -56,7 +56,9 @@ class BeamShape {
   [[nodiscard]] const CsgExpression& root() const { return root_; }
   [[nodiscard]] const Box3d& bounds() const { return bounds_; }
   [[nodiscard]] const std::vector<CsgPlane>& planes() const { return planes_; }
-  [[nodiscard]] const std::vector<CsgQuadric>& quadrics() const { return csg_.surfaces().quadrics(); }
+  [[nodiscard]] const std::vector<CsgQuadric>& quadrics() const {
+    return csg_.surfaces().quadrics();
+  }
   [[nodiscard]] const std::vector<Edge>& edges() const { return edges_; }
 
   // Leaves: those of csg(), then the facets, then the volumes.
@@ -81,7 +83,8 @@ class BeamShape {
     return leaf < csg_.leaf_count() && convex(leaf) == nullptr;
   }
   [[nodiscard]] bool is_flat(std::uint32_t leaf, std::uint32_t face) const {
-    return facet(leaf) != nullptr || (convex(leaf) != nullptr && face < convex(leaf)->planes.size());
+    return facet(leaf) != nullptr ||
+           (convex(leaf) != nullptr && face < convex(leaf)->planes.size());
   }
 
   // Of root(), what matters where meets(box) holds for each box around the place.

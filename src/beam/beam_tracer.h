@@ -35,21 +35,22 @@ struct LitShare {
 struct PixelSurface {
   std::optional<SeenSurface> seen;
   std::uint32_t lit = 0, lit_known = 0;  // by light; see beam_shadow.h
-  std::vector<LitShare> lit_shares;      // by light, where lights are not looked at jointly; else empty
-  double lo = 0, hi = 0, estimate = 0;   // parts of the pixel; estimates add up to 1
-  Vec2d sample;                          // a point of the picture where it is seen, or may be
-  double sample_weight = -1;             // the area that the sample stands for
-  std::vector<AreaSample> samples;       // more of them, of curved surfaces
-  std::uint32_t mirror_number = 0;       // LookNode::mirrors
-  MirrorChain mirrors;                   // in which it is seen
-  bool mirror_open = false;              // a mirror, and what is seen in it is not known
+  std::vector<LitShare> lit_shares;  // by light, where lights are not looked at jointly; else empty
+  double lo = 0, hi = 0, estimate = 0;  // parts of the pixel; estimates add up to 1
+  Vec2d sample;                         // a point of the picture where it is seen, or may be
+  double sample_weight = -1;            // the area that the sample stands for
+  std::vector<AreaSample> samples;      // more of them, of curved surfaces
+  std::uint32_t mirror_number = 0;      // LookNode::mirrors
+  MirrorChain mirrors;                  // in which it is seen
+  bool mirror_open = false;             // a mirror, and what is seen in it is not known
 };
 
 struct BeamPixel {
   int x = 0, y = 0;
   std::span<const PixelSurface> surfaces;
   double coverage_lo = 0, coverage_hi = 1;  // of all surfaces together
-  double region_side = 1;     // of the smallest region that it was cut into, or of the one that it is part of
+  double region_side =
+      1;  // of the smallest region that it was cut into, or of the one that it is part of
   bool begins_region = true;  // it is at the left or upper border of its region
   bool certified = true;  // no surface's bounds are wider than the tolerance, and no mirror is open
 };
@@ -64,15 +65,15 @@ struct BeamStats {
 };
 
 struct BeamOptions {
-  double tolerance = 1.0 / 512;    // of hi - lo
-  double least_region = 1.0 / 64;       // of a pixel's side
+  double tolerance = 1.0 / 512;            // of hi - lo
+  double least_region = 1.0 / 64;          // of a pixel's side
   double least_crowded_region = 1.0 / 16;  // in a pixel that has taken
   std::uint32_t many_rays = 512;           // so many rays already
-  double least_shadow_region = 1.0 / 8;  // where lights are not looked at jointly
-  double least_open_region = 1.0 / 8;   // where a leaf that is not convex is among what may be seen
-  int tile_px = 16;                // a power of two
-  int threads = 0;                 // 0: all
-  IsMirror is_mirror;              // of flat surfaces; none: no mirrors are looked into
+  double least_shadow_region = 1.0 / 8;    // where lights are not looked at jointly
+  double least_open_region = 1.0 / 8;  // where a leaf that is not convex is among what may be seen
+  int tile_px = 16;                    // a power of two
+  int threads = 0;                     // 0: all
+  IsMirror is_mirror = {};             // of flat surfaces; none: no mirrors are looked into
 };
 
 struct BeamTile {

@@ -240,8 +240,10 @@ LeafWindow BeamView::make_window(std::uint32_t solid, std::uint32_t leaf) const 
     if (!(q.z > kWindowMargin * scale)) return everywhere;
     const double x = q.x / q.z, y = q.y / q.z;
     const double slack = kWindowMargin * (1 + std::abs(x) + std::abs(y)) * (1 + scale / q.z * 1e-6);
-    window = {std::min(window.x0, x - slack), std::min(window.y0, y - slack),
-              std::max(window.x1, x + slack), std::max(window.y1, y + slack),
+    window = {std::min(window.x0, x - slack),
+              std::min(window.y0, y - slack),
+              std::max(window.x1, x + slack),
+              std::max(window.y1, y + slack),
               std::min(window.near, q.z - kWindowMargin * scale),
               std::max(window.far, q.z + kWindowMargin * scale)};
   }

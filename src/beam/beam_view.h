@@ -118,7 +118,8 @@ class BeamView {
   [[nodiscard]] bool direction_fixed() const { return frames_[0].direction_fixed; }
   // Of a leaf in the picture; rays outside miss it.
   [[nodiscard]] LeafWindow window(std::uint32_t solid, std::uint32_t leaf) const {
-    return windows_.empty() || leaf == kStartLeaf ? make_window(solid, leaf) : windows_[solid][leaf];
+    return windows_.empty() || leaf == kStartLeaf ? make_window(solid, leaf)
+                                                  : windows_[solid][leaf];
   }
   // Holds what the rays through `rect` pass between two depths, in the solid's space. Precondition: not direction_fixed().
   [[nodiscard]] SpaceCell cell(std::uint32_t solid, const Rect& rect, Interval depths) const;

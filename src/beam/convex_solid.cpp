@@ -148,8 +148,7 @@ class Maker {
   void add_slab(const Region& region, const Slab& slab, NodeIndex parent) {
     std::vector<RegionEdge> across;
     for (const RegionEdge& e : region.edges()) {
-      const bool spans =
-          std::min(e.a.y, e.b.y) <= slab.low && std::max(e.a.y, e.b.y) >= slab.high;
+      const bool spans = std::min(e.a.y, e.b.y) <= slab.low && std::max(e.a.y, e.b.y) >= slab.high;
       if (spans && e.a.y != e.b.y) across.push_back(e);
     }
     const double middle = slab.low / 2 + slab.high / 2;
@@ -243,8 +242,8 @@ class Maker {
     placed.object_from_primitive = whole.object_from_primitive * place;
     std::vector<CsgHalfSpace> own;  // cuts as the primitive sees them
     for (const CsgHalfSpace& cut : cuts) {
-      own.push_back({transpose(place.linear) * cut.normal,
-                     cut.d - dot(cut.normal, place.translation)});
+      own.push_back(
+          {transpose(place.linear) * cut.normal, cut.d - dot(cut.normal, place.translation)});
     }
     leaf_ = &placed;
     add_leaf_to(root, std::move(primitive), own);

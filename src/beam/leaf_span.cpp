@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <tuple>
-#include <utility>
 
 namespace arris {
 namespace {
@@ -95,12 +93,15 @@ class SpanMaker {
   // What slices of [near, far] tell, in their order.
   struct Slices {
     std::optional<double> first_on, first_in;  // where the first begin that are not outside, inside
-    double in_end = 0, last_on = 0;            // where the inside ones end that come first; where the last end
+    double in_end = 0,
+           last_on = 0;  // where the inside ones end that come first; where the last end
   };
   [[nodiscard]] Slices slice(Interval range) const {
     constexpr int kSlices = 16;
     const CsgSolid& solid = view_.shape(place_.solid).csg();
-    const auto depth = [&](int i) { return range.lo + (range.hi - range.lo) * (double(i) / kSlices); };
+    const auto depth = [&](int i) {
+      return range.lo + (range.hi - range.lo) * (double(i) / kSlices);
+    };
     Slices found;
     for (int i = 0; i < kSlices; ++i) {
       const Interval d{depth(i), i + 1 < kSlices ? depth(i + 1) : range.hi};
@@ -318,102 +319,13 @@ class SpanMaker {
   bool needs_quadric_ = false;
 };
 
-// A plane behind the ray, or that it runs along, is never met; its depth is then said to be infinite.
-Met plane_met(const BeamView& view, const SpanEnd& end, SignOracle& oracle) {
-  const PlaneForm& form = view.plane(end.surface.solid, end.surface.index);
-  const Sign height = oracle.ask(key_of(Of::height, end.surface), form.height);
-  const Sign slope = oracle.ask(key_of(Of::slope, end.surface), form.slope);
-  if (height * slope == Sign::unknown) return Met::unknown;
-  return height * slope == Sign::negative ? Met::yes : Met::no;
-}
-
-Order order_of_sign(Sign difference) {
-  return difference == Sign::unknown    ? Order::unknown
-         : difference == Sign::negative ? Order::before
-                                        : Order::after;
-}
-
-Order reversed(Order order) {
-  return order == Order::before ? Order::after : order == Order::after ? Order::before : order;
-}
-
-Order order_of_planes(const BeamView& view, const SpanEnd& a, const SpanEnd& b,
-                      SignOracle& oracle) {
-  const PlaneForm& p = view.plane(a.surface.solid, a.surface.index);
-  const PlaneForm& q = view.plane(b.surface.solid, b.surface.index);
-  const Sign slopes = oracle.ask(key_of(Of::slope, a.surface), p.slope) *
-                      oracle.ask(key_of(Of::slope, b.surface), q.slope);
-  if (slopes == Sign::unknown) return Order::unknown;
-  const SignKey key{Of::plane_plane, a.surface.solid, a.surface.index, b.surface.solid,
-                    b.surface.index};
-  return order_of_sign(slopes * oracle.ask(key, plane_before_plane(p, q, view.direction_fixed())));
-}
-
-// The plane against the middle between the roots.
-Order order_to_middle(const BeamView& view, const SpanEnd& plane, const SpanEnd& root,
-                      SignOracle& oracle) {
-  const PlaneForm& p = view.plane(plane.surface.solid, plane.surface.index);
-  const QuadricForm& q = view.quadric(root.surface.solid, root.surface.index);
-  const Interval middle =
-      -range_over(q.half_slope, oracle.rect()) / range_over(q.curvature, oracle.rect());
-  if (plane.depth.hi < middle.lo) return Order::before;
-  if (plane.depth.lo > middle.hi) return Order::after;
-  const Sign scale = oracle.ask(key_of(Of::slope, plane.surface), p.slope) *
-                     oracle.ask(key_of(Of::curvature, root.surface), q.curvature);
-  if (scale == Sign::unknown) return Order::unknown;
-  const SignKey key{Of::plane_middle, plane.surface.solid, plane.surface.index, root.surface.solid,
-                    root.surface.index};
-  return order_of_sign(scale * oracle.ask(key, plane_beyond_middle(q, p, view.direction_fixed())));
-}
-
-// By whether the point on the plane is inside the quadric; where that leaves two ways, by the middle.
-Order order_of_plane_and_root(const BeamView& view, const SpanEnd& plane, const SpanEnd& root,
-                              SignOracle& oracle) {
-  const CsgQuadric& quadric =
-      view.shape(root.surface.solid).quadrics()[root.surface.index];
-  const QuadricForm& q = view.quadric(root.surface.solid, root.surface.index);
-  const PlaneForm& p = view.plane(plane.surface.solid, plane.surface.index);
-  const SignKey key{Of::plane_quadric, plane.surface.solid, plane.surface.index, root.surface.solid,
-                    root.surface.index};
-  const Sign at_plane = oracle.ask(key, quadric_at_plane(q, p, view.direction_fixed()));
-  if (at_plane == Sign::unknown) return Order::unknown;
-  const bool inside = at_plane == Sign::negative;
-  // Round quadrics lie between their roots; a cone does where the curvature is positive.
-  Sign curvature = Sign::positive;
-  if (quadric.form == CsgQuadric::Form::cone) {
-    curvature = oracle.ask(key_of(Of::curvature, root.surface), q.curvature);
-    if (curvature == Sign::unknown) return Order::unknown;
-  }
-  const bool between = curvature == Sign::positive;
-  switch (root.surface.root) {
-    case Root::nearer:
-      if (inside) return Order::after;
-      return between ? order_to_middle(view, plane, root, oracle) : Order::before;
-    case Root::farther:
-      if (inside || !between) return Order::before;
-      return order_to_middle(view, plane, root, oracle);
-    case Root::leaving: {
-      if (!inside) return Order::after;
-      if (between) return Order::before;
-      const Met leaves = decide_end_met(view, root, oracle);
-      if (leaves == Met::unknown) return Order::unknown;
-      return leaves == Met::no ? Order::before : order_to_middle(view, plane, root, oracle);
-    }
-    case Root::other_half:
-      return inside ? order_to_middle(view, plane, root, oracle) : Order::before;
-    case Root::none:
-    case Root::whole:
-      break;
-  }
-  return Order::unknown;
-}
-
 }  // namespace
 
 LeafSpan make_plane_span(const BeamView& view, const LitPlane& plane, const Rect& rect) {
   const PlaneForm& form = view.plane(plane.solid, plane.plane);
   LeafSpan span;
-  span.enter = quotient(absolute(range_over(form.height, rect)), absolute(range_over(form.slope, rect)));
+  span.enter =
+      quotient(absolute(range_over(form.height, rect)), absolute(range_over(form.slope, rect)));
   span.leave = {kInfinity, kInfinity};
   span.certain = true;
   span.entering.push_back({span.enter, {plane.solid, plane.plane, Root::none}, 0});
@@ -423,164 +335,6 @@ LeafSpan make_plane_span(const BeamView& view, const LitPlane& plane, const Rect
 std::optional<LeafSpan> make_span(const BeamView& view, LeafPlace place, double depth_end,
                                   const SignOracle& oracle) {
   return SpanMaker(view, place, depth_end, oracle).make();
-}
-
-Met decide_end_met(const BeamView& view, const SpanEnd& end, SignOracle& oracle) {
-  if (end.depth.hi < kInfinity) return Met::yes;
-  if (end.surface.is_whole()) return Met::unknown;
-  if (end.surface.is_plane()) return plane_met(view, end, oracle);
-  const CsgQuadric& quadric =
-      view.shape(end.surface.solid).quadrics()[end.surface.index];
-  const bool may_open = quadric.form == CsgQuadric::Form::cone &&
-                        (end.surface.root == Root::farther || end.surface.root == Root::leaving);
-  if (!may_open) return Met::yes;
-  // A ray that runs into the opening of a cone leaves it if it comes from the apex's side, but for good.
-  const QuadricForm& q = view.quadric(end.surface.solid, end.surface.index);
-  const Sign curvature = oracle.ask(key_of(Of::curvature, end.surface), q.curvature);
-  if (curvature == Sign::unknown) return Met::unknown;
-  if (curvature == Sign::positive) return Met::yes;
-  if (end.surface.root == Root::farther) return Met::no;
-  const Sign half_slope = oracle.ask(key_of(Of::half_slope, end.surface), q.half_slope);
-  if (half_slope == Sign::unknown) return Met::unknown;
-  return half_slope == Sign::positive ? Met::yes : Met::no;
-}
-
-Order order_of(const BeamView& view, const SpanEnd& a, const SpanEnd& b, SignOracle& oracle) {
-  if (a.surface == b.surface) return Order::same;
-  if (a.depth.hi < b.depth.lo) return Order::before;
-  if (a.depth.lo > b.depth.hi) return Order::after;
-  if (a.surface.is_whole() || b.surface.is_whole()) return Order::unknown;
-  for (const bool first : {true, false}) {
-    const SpanEnd& end = first ? a : b;
-    if (!end.surface.is_plane()) continue;
-    const Met met = decide_end_met(view, end, oracle);
-    if (met == Met::unknown) return Order::unknown;
-    if (met == Met::no) return first ? Order::after : Order::before;
-  }
-  if (a.surface.is_plane() && b.surface.is_plane()) {
-    // One polynomial for both ways round.
-    const bool turned =
-        std::pair(b.surface.solid, b.surface.index) < std::pair(a.surface.solid, a.surface.index);
-    return turned ? reversed(order_of_planes(view, b, a, oracle))
-                  : order_of_planes(view, a, b, oracle);
-  }
-  if (a.surface.is_plane()) return order_of_plane_and_root(view, a, b, oracle);
-  if (b.surface.is_plane()) return reversed(order_of_plane_and_root(view, b, a, oracle));
-  if (a.surface.solid == b.surface.solid && a.surface.index == b.surface.index) {
-    return a.surface.root == Root::nearer ? Order::before : Order::after;
-  }
-  const auto rank = [](const SpanEnd& e) {
-    return std::tuple(e.surface.solid, e.surface.index, e.surface.root);
-  };
-  const bool turned = rank(b) < rank(a);
-  const BeamSurface &p = turned ? b.surface : a.surface, &q = turned ? a.surface : b.surface;
-  const SignKey key{Of::root_root, p.solid, p.index,
-                    q.solid,       q.index, std::uint8_t(int(p.root) * 8 + int(q.root))};
-  const Order order = order_of_sign(oracle.ask_without_polynomial(key));
-  return turned ? reversed(order) : order;
-}
-
-namespace {
-
-// Does a ray from outside meet the quadric before it?
-Met quadric_met(const BeamView& view, const BeamSurface& s, SignOracle& oracle) {
-  const QuadricForm& q = view.quadric(s.solid, s.index);
-  const bool is_cone =
-      view.shape(s.solid).quadrics()[s.index].form == CsgQuadric::Form::cone;
-  const auto met = [](Sign sign, Sign wanted) {
-    return sign == Sign::unknown ? Met::unknown : sign == wanted ? Met::yes : Met::no;
-  };
-  if (s.root == Root::other_half) {
-    const Met curved = met(oracle.ask(key_of(Of::curvature, s), q.curvature), Sign::negative);
-    if (curved != Met::yes) return curved;
-    return met(oracle.ask(key_of(Of::half_slope, s), q.half_slope), Sign::positive);
-  }
-  if (is_cone) {
-    const Met opens = met(oracle.ask(key_of(Of::curvature, s), q.curvature), Sign::negative);
-    if (opens != Met::no) return opens;
-  }
-  if (q.has_tangents) {
-    const Met low = met(oracle.ask(key_of(Of::tangent_low, s), q.tangents[0]), Sign::positive);
-    if (low != Met::yes) return low;
-    const Met high = met(oracle.ask(key_of(Of::tangent_high, s), q.tangents[1]), Sign::positive);
-    if (high != Met::yes || !view.direction_fixed()) return high;
-    return met(oracle.ask(key_of(Of::half_slope, s), q.half_slope), Sign::negative);
-  }
-  const Met hits = met(oracle.ask(key_of(Of::discriminant, s), q.discriminant), Sign::positive);
-  if (hits != Met::yes) return hits;
-  return met(oracle.ask(key_of(Of::half_slope, s), q.half_slope), Sign::negative);
-}
-
-}  // namespace
-
-namespace {
-
-Met facet_met(const BeamView& view, const LeafSpan& span, LeafPlace place, SignOracle& oracle) {
-  const Facet& facet = *view.shape(place.solid).facet(place.leaf);
-  const Sign wanted = *span.facet_positive ? Sign::positive : Sign::negative;
-  for (std::size_t k = 0; k < 3; ++k) {
-    const BeamSurface edge{place.solid, facet.edges[k], Root::none};
-    const Sign side = oracle.ask(key_of(Of::side, edge), view.side(place.solid, edge.index));
-    if (side == Sign::unknown) return Met::unknown;
-    if ((facet.turned[k] ? -side : side) != wanted) return Met::no;
-  }
-  return decide_end_met(view, span.entering[0], oracle);
-}
-
-}  // namespace
-
-Met decide_met(const BeamView& view, const LeafSpan& span, LeafPlace place, SignOracle& oracle) {
-  if (span.certain) return Met::yes;
-  if (span.facet_positive) return facet_met(view, span, place, oracle);
-  if (span.entering.size() == 1 && span.entering[0].surface.is_whole()) return Met::unknown;
-  if (span.start_open) {
-    // make_span() found a sign open that it could not ask for.
-    const ConvexLeaf& leaf = *view.shape(place.solid).convex(place.leaf);
-    for (const PlaneRef& ref : leaf.planes) {
-      const BeamSurface s{place.solid, ref.plane, Root::none};
-      const PlaneForm& form = view.plane(s.solid, s.index);
-      const bool eye_in_plane = !view.direction_fixed() &&
-                                oracle.find(key_of(Of::height, s), form.height) == Sign::unknown;
-      const Sign sign = eye_in_plane ? oracle.ask(key_of(Of::slope, s), form.slope)
-                                     : oracle.ask(key_of(Of::height, s), form.height);
-      if (sign == Sign::unknown) return Met::unknown;
-    }
-    if (leaf.quadric) {
-      const BeamSurface s{place.solid, *leaf.quadric, Root::nearer};
-      const QuadricForm& q = view.quadric(s.solid, s.index);
-      if (oracle.ask(key_of(Of::value, s), q.value) != Sign::unknown) {
-        oracle.ask(key_of(Of::along, s), q.along);
-      }
-    }
-    return Met::unknown;
-  }
-  if (span.quadric) {
-    const Met met = quadric_met(view, *span.quadric, oracle);
-    if (met != Met::yes) return met;
-  }
-  for (const SpanEnd& e : span.entering) {
-    const Met met = decide_end_met(view, e, oracle);
-    if (met != Met::yes) return met;
-    for (const SpanEnd& l : span.leaving) {
-      const Order order = order_of(view, e, l, oracle);
-      if (order == Order::unknown) return Met::unknown;
-      if (order != Order::before) return Met::no;
-    }
-  }
-  return Met::yes;
-}
-
-std::optional<SpanEnd> decide_end(const BeamView& view, const std::vector<SpanEnd>& ends,
-                                  bool entering, SignOracle& oracle) {
-  if (ends.empty()) return std::nullopt;
-  const SpanEnd* best = ends.data();
-  for (const SpanEnd& end : ends) {
-    if (&end == best) continue;
-    const Order order = order_of(view, end, *best, oracle);
-    if (order == Order::unknown) return std::nullopt;
-    if (order == (entering ? Order::after : Order::before)) best = &end;
-  }
-  return *best;
 }
 
 }  // namespace arris

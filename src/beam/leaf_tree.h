@@ -25,7 +25,8 @@ class LeafTree {
  private:
   struct Node {
     Box3d box;
-    std::uint32_t first = 0, count = 0;  // of order_; count 0: an inner node, whose first child follows
+    std::uint32_t first = 0,
+                  count = 0;  // of order_; count 0: an inner node, whose first child follows
     std::uint32_t second_child = 0;
   };
   void build(std::uint32_t first, std::uint32_t count);

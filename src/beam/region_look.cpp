@@ -41,7 +41,8 @@ Cover cover_over(const SpanSlot& s, Interval depths) {
 }
 
 Cover join_covers(CsgStep::Kind kind, std::span<const Cover> operands) {
-  Cover value = kind == CsgStep::Kind::intersect || kind == CsgStep::Kind::even ? Cover::in : Cover::out;
+  Cover value =
+      kind == CsgStep::Kind::intersect || kind == CsgStep::Kind::even ? Cover::in : Cover::out;
   for (const Cover cover : operands) {
     switch (kind) {
       case CsgStep::Kind::unite:
@@ -184,7 +185,9 @@ class Looker {
       for (std::uint32_t slot = 0; slot < leaves.size(); ++slot) {
         const LeafPlace place{parts_[p].solid, leaves[slot]};
         first_slots_.push_back(
-            {p, slot, place, is_goal ? make_plane_span(view_, *options_.only, rect_) : spans[first_slots_.size()], is_goal});
+            {p, slot, place,
+             is_goal ? make_plane_span(view_, *options_.only, rect_) : spans[first_slots_.size()],
+             is_goal});
       }
     }
   }

@@ -115,7 +115,8 @@ struct Operand {
 };
 
 // Of the operands from `base` on. Those that are known are nowhere in the steps; returns the value.
-Cover join_parity(CsgStep::Kind kind, std::span<const Operand> operands, std::vector<CsgStep>& out) {
+Cover join_parity(CsgStep::Kind kind, std::span<const Operand> operands,
+                  std::vector<CsgStep>& out) {
   bool odd = kind == Kind::odd;
   std::uint32_t left = 0;
   for (const Operand& operand : operands) {

@@ -75,8 +75,7 @@ Rgb shade_directly(const Job& job, const PixelSurface& surface, const MirroredSi
                    PathRays& rays) {
   if (int(surface.mirrors.size()) >= std::max(1, job.settings.max_depth)) return {};
   const auto shade_at = [&](const MirroredSight& at) {
-    return at.throughput *
-           direct_light(job.scene.scene(), job.lights, at.sight, surface, rays);
+    return at.throughput * direct_light(job.scene.scene(), job.lights, at.sight, surface, rays);
   };
   if (surface.samples.size() < 2) return shade_at(first);
   Rgb sum;
@@ -110,8 +109,9 @@ Rgb shade(const Job& job, const BeamPixel& pixel, const PixelSurface& surface,
     const Vec2d at = path_start(pixel, surface, i, sampler);
     MirroredSight start = make_sight(job.scene, surface, at);
     start.sight.knows_area_lights = job.knows_area_lights;
-    other += start.throughput *
-             trace_known_sight(job.scene.scene(), job.settings, start.sight, sampler, rays).radiance;
+    other +=
+        start.throughput *
+        trace_known_sight(job.scene.scene(), job.settings, start.sight, sampler, rays).radiance;
   }
   return direct + other * (1.0F / float(count));
 }
@@ -218,7 +218,7 @@ class BeamRenderer final : public Renderer {
     }
     // Four rays a region don't get better by smaller ones as bounds do.
     const double least = settings_.rule == BeamRule::corners ? 1.0 / 8 : BeamOptions{}.least_region;
-    BeamOptions beam{.least_region = least, .threads = options.threads, .is_mirror = {}};
+    BeamOptions beam{.least_region = least, .threads = options.threads};
     if (image.max_depth > 0) {
       beam.is_mirror = [&](const SeenSurface& seen) { return is_mirror(beams, seen); };
     }
@@ -228,9 +228,8 @@ class BeamRenderer final : public Renderer {
         settings_.rule == BeamRule::corners
             ? render_with(CornerTracer(beams.solids(), beams.eye(), image.width_px, image.height_px,
                                        beam, lights))
-            : render_with(
-                  BeamTracer(beams.solids(), beams.eye(), image.width_px, image.height_px, beam,
-                             lights));
+            : render_with(BeamTracer(beams.solids(), beams.eye(), image.width_px, image.height_px,
+                                     beam, lights));
     const bool stopped = options.stop != nullptr && options.stop->load();
     RenderResult result;
     result.samples = options.samples;
@@ -270,12 +269,14 @@ std::vector<std::string> beam_problems(const Scene& scene) {
   const RoundingSettings none;
   for (const Object& object : scene.objects) {
     if (object.csg) continue;  // never rounded
-    const RoundingSettings& rounding =
-        object.rounding ? *object.rounding : scene.rounding ? *scene.rounding : none;
+    const RoundingSettings& rounding = object.rounding  ? *object.rounding
+                                       : scene.rounding ? *scene.rounding
+                                                        : none;
     if (rounding.method != RoundMethod::exact && rounding.method != RoundMethod::shader) continue;
-    problems.push_back("object \"" + object.name +
-                       "\" is to have rounded edges, and beams see meshes as they are; use --round none, "
-                       "--round-method mesh:3 or --integrator path");
+    problems.push_back(
+        "object \"" + object.name +
+        "\" is to have rounded edges, and beams see meshes as they are; use --round none, "
+        "--round-method mesh:3 or --integrator path");
   }
   return problems;
 }

@@ -128,9 +128,10 @@ SurfaceHit BeamScene::csg_hit(const SeenSurface& seen, const Ray& world) const {
                 transform_vector(object.object_from_world, world.direction)};
   const Facet* facet = shape.facet(seen.leaf);
   const std::uint32_t leaf = facet != nullptr ? facet->source : seen.leaf;
-  const Meeting met = facet != nullptr
-                          ? Meeting{plane_depth(shape.planes()[facet->plane.plane], own), facet->triangle}
-                          : depth_of(solid, seen, own);
+  const Meeting met =
+      facet != nullptr
+          ? Meeting{plane_depth(shape.planes()[facet->plane.plane], own), facet->triangle}
+          : depth_of(solid, seen, own);
   const CsgBoundary boundary{met.depth, leaf, met.face, seen.entering};
   const Vec3d normal = object.world_from_object_normal * solid.outward_normal(boundary, own);
   SurfaceHit hit;
@@ -151,8 +152,8 @@ SurfaceHit BeamScene::mesh_hit(const SeenSurface& seen, const Ray& world) const 
   const Facet& facet = *shape.facet(seen.leaf);
   const std::uint32_t triangle = facet.triangle;
   const std::uint32_t record = records_[seen.solid];
-  const WorldTriangle w = world_triangle(
-      scene_.scene(), scene_.geometry().embree.records()[record], triangle);
+  const WorldTriangle w =
+      world_triangle(scene_.scene(), scene_.geometry().embree.records()[record], triangle);
   const double t = plane_depth(shape.planes()[facet.plane.plane], world);
   const Vec3d p = world.origin + world.direction * t;
   const Vec3d a = Vec3d(w.p1) - Vec3d(w.p0), b = Vec3d(w.p2) - Vec3d(w.p0), q = p - Vec3d(w.p0);

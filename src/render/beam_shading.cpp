@@ -68,8 +68,8 @@ LightSample sample_beam_light(const LightSet& lights, const BeamLight& light, Ve
   sample.wi = to * (1 / sample.distance);
   const float cosine = -dot(sample.wi, area.normal);
   if (!(cosine > 0)) return sample;
-  sample.radiance = area.radiance *
-                    (cosine * area.area * light.share / (sample.distance * sample.distance));
+  sample.radiance =
+      area.radiance * (cosine * area.area * light.share / (sample.distance * sample.distance));
   sample.pdf = 1;
   return sample;
 }

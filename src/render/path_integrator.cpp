@@ -157,9 +157,8 @@ std::optional<Shadow> Path::sample_shadow(const SurfaceHit& hit, const Frame& fr
   const float u_select = lights.emitters.size() > 1 ? sampler.next_1d() : 0.0F;
   const std::optional<LightSample> light = sample_light(lights, hit.position, u_select, u);
   if (!light) return std::nullopt;
-  const bool is_known =
-      light->is_delta || (light->kind == EmitterKind::rectangle && known != nullptr &&
-                          known->knows_area_lights);
+  const bool is_known = light->is_delta || (light->kind == EmitterKind::rectangle &&
+                                            known != nullptr && known->knows_area_lights);
   if (known != nullptr && is_known) return std::nullopt;
   const Vec3f wi = local_from_world(frame, light->wi);
   if (!same_side(light->wi, hit, wi.z < 0)) {

@@ -47,9 +47,9 @@ PathSample trace_path(const PreparedScene& scene, const PathSettings& settings, 
 // (point, spot, directional), and perhaps area lights, send to that point directly.
 struct KnownSight {
   TraceRay ray;
-  std::optional<SurfaceHit> hit;  // nothing: it leaves the scene
+  std::optional<SurfaceHit> hit;   // nothing: it leaves the scene
   bool knows_area_lights = false;  // but for what mirrors and glass show of them
-  int mirrors = 0;                // it has left so many mirrors before, which counts as depth
+  int mirrors = 0;                 // it has left so many mirrors before, which counts as depth
 };
 PathSample trace_known_sight(const PreparedScene& scene, const PathSettings& settings,
                              const KnownSight& sight, Sampler sampler, PathRays& rays);

@@ -158,7 +158,7 @@ TEST(beam_tracer, same_pixels_at_any_number_of_threads) {
   scene.add(random_convex_tree(random, 2));
   scene.eye = look_at({4, 3, 3}, {0, 0, 0}, 40, 40, 40);
   const auto sum = [&](int threads) {
-    const BeamTracer tracer(scene.placed, scene.eye, 40, 40, {.threads = threads, .is_mirror = {}});
+    const BeamTracer tracer(scene.placed, scene.eye, 40, 40, {.threads = threads});
     std::vector<double> values;
     for (const BeamTile& tile : tracer.make_tiles()) {
       tracer.trace_tile(tile, [&](const BeamPixel& pixel) {
@@ -196,10 +196,10 @@ TEST(beam_tracer, bounds_hold_for_meshes) {
     for (std::uint32_t k = 0; k < count; ++k) {
       const Vec3d middle = random_vector(random, 1);
       const double size = count > 6 ? 0.3 : 1.5;
-      triangles.push_back({{middle + random_vector(random, size),
-                            middle + random_vector(random, size),
-                            middle + random_vector(random, size)},
-                           k});
+      triangles.push_back(
+          {{middle + random_vector(random, size), middle + random_vector(random, size),
+            middle + random_vector(random, size)},
+           k});
     }
     const CsgMesh closed = random_mesh(random);
     for (const Triangle& t : closed.triangles) {
@@ -223,7 +223,8 @@ TEST(beam_tracer, the_inside_of_a_torus_is_certified) {
   EXPECT_EQ(report.missed, 0);
   EXPECT_EQ(report.outside, 0);
   EXPECT_GT(report.uncertified, 0);
-  EXPECT_LT(report.uncertified, 100);  // of 256; the torus covers about 100, of which half are at its outlines
+  EXPECT_LT(report.uncertified,
+            100);  // of 256; the torus covers about 100, of which half are at its outlines
 }
 
 }  // namespace

@@ -66,8 +66,7 @@ INSTANTIATE_TEST_SUITE_P(Kinds, ConvexSolid, testing::Values(kPrism, kRevolution
 
 TEST(ConvexSolidOf, keeps_what_it_can_not_cut) {
   CsgRandom random(3);
-  EXPECT_FALSE(is_convex_only(
-      make_convex_solid(one_leaf(random_primitive(random, kUnevenPrism)))));
+  EXPECT_FALSE(is_convex_only(make_convex_solid(one_leaf(random_primitive(random, kUnevenPrism)))));
   EXPECT_FALSE(is_convex_only(make_convex_solid(one_leaf(CsgTorus{}))));
 }
 
@@ -92,8 +91,7 @@ TEST(OutlineParts, islands_lie_in_holes) {
     if (turned) std::ranges::reverse(p);
     return p;
   };
-  const auto parts =
-      find_outline_parts({{square(3, false), square(2, true), square(1, false)}});
+  const auto parts = find_outline_parts({{square(3, false), square(2, true), square(1, false)}});
   ASSERT_TRUE(parts);
   ASSERT_EQ(parts->size(), 2U);
   EXPECT_EQ((*parts)[0].pockets.size(), 1U);

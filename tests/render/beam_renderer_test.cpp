@@ -58,7 +58,8 @@ TEST(beam_renderer, agrees_with_the_path_tracer) {
   const Image beam = render(scene, *make_beam_renderer(), 1).picture.color;
   const Image many = render(scene, *make_path_renderer(), 1024).picture.color;
   EXPECT_LT(rmse(beam, many), 0.01);
-  const Image corners = render(scene, *make_beam_renderer({.rule = BeamRule::corners}), 1).picture.color;
+  const Image corners =
+      render(scene, *make_beam_renderer({.rule = BeamRule::corners}), 1).picture.color;
   EXPECT_LT(rmse(corners, many), 0.02);
 }
 
