@@ -33,7 +33,8 @@ step_includes() {
 
 step_tidy() { scripts/tidy.py; }
 
-# Built by clang, whose warnings are errors here. Without the statistics of samplers, which are about numbers and shoot a million directions each.
+# Built by clang, whose warnings are errors here. Without the statistics of samplers, which are about numbers and
+# shoot a million directions each.
 step_asan() {
   cmake --preset asan
   cmake --build --preset asan

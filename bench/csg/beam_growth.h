@@ -1,8 +1,8 @@
 // beam_growth.h — how the time of a picture grows
 // What       with 10² to 10⁵ primitives in a heap that fills the picture; with the picture's size, on the plate of
 //            examples/beam; and for a plate with 400 holes as one difference against 400 tiles with a hole each. By
-//            the beam renderer and the path tracer, in rounds in which each has its turn; ratios are medians of those in
-//            one round, against 1,000 primitives, the middle size and tiles.
+//            the beam renderer and the path tracer, in rounds in which each has its turn; ratios are medians of those
+//            in one round, against 1,000 primitives, the middle size and tiles.
 #pragma once
 
 #include <string>

@@ -1,5 +1,5 @@
 // povray.h — pictures and statistics of an installed POV-Ray 3.7
-// Guarantee  no shell; pictures are half float in linear light (OpenEXR), so that nothing is clipped or rounded to 1/255
+// Guarantee  no shell; pictures are half float in linear light (OpenEXR), so that nothing is clipped or rounded
 // Errors     arris::Error, kind failed, with the end of what povray said
 #pragma once
 

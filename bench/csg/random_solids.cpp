@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <cstdint>
+#include <random>
 #include <utility>
 
 namespace arris::bench {

@@ -121,7 +121,8 @@ class BeamView {
     return windows_.empty() || leaf == kStartLeaf ? make_window(solid, leaf)
                                                   : windows_[solid][leaf];
   }
-  // Holds what the rays through `rect` pass between two depths, in the solid's space. Precondition: not direction_fixed().
+  // Holds what the rays through `rect` pass between two depths, in the solid's space. Precondition: rays
+  // have one origin.
   [[nodiscard]] SpaceCell cell(std::uint32_t solid, const Rect& rect, Interval depths) const;
   // A light's view remembers what it was asked: for one thread at a time.
   [[nodiscard]] const PlaneForm& plane(std::uint32_t solid, std::uint32_t index) const {

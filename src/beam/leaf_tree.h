@@ -1,6 +1,6 @@
 // leaf_tree.h — the leaves of a shape by place, and the part of its expression that matters somewhere
-// What       A tree of boxes over the leaves. Of an expression that is a union of many operands, near() keeps those that
-//            have a leaf in a piece of space; of any other it keeps everything.
+// What       A tree of boxes over the leaves. Of an expression that is a union of many operands, near() keeps those
+//            that have a leaf in a piece of space; of any other it keeps everything.
 // Guarantee  near() has the value of the whole wherever meets() holds for every box that holds the place
 //            (tests/beam/leaf_tree_test.cpp)
 // Cost       about logarithmic in the operands, and linear in those that are kept

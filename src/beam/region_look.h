@@ -68,7 +68,7 @@ struct LookOptions {
   std::uint32_t most_leaves = 8;
 };
 
-// `by` in the place of a node, with make_end(end) for each of its ends. Those of its `unknown` ends lose their candidates.
+// `by` in the place of a node, with make_end(end) for each of its ends. Its `unknown` ends lose their candidates.
 template <class MakeEnd>
 void replace_node(LookTree& tree, std::uint32_t at, const LookTree& by, const MakeEnd& make_end) {
   const auto base = std::uint32_t(tree.nodes.size()) - 1;
