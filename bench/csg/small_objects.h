@@ -1,7 +1,7 @@
 // small_objects.h — what a picture shows of things smaller than a pixel, against dense sampling
 // What       A truth is the mean of 256 rays a pixel on a regular grid, with no noise. The error (RMSE of linear light)
-//            is taken on every sixteenth pixel. An object counts as missed if what it adds to the 3 x 3 pixels round it,
-//            against the median of those 3 pixels away, is less than a tenth of what it adds in truth, at all its
+//            is taken on every sixteenth pixel. An object counts as missed if what it adds to the 3 x 3 pixels round
+//            it, against the median of those 3 pixels away, is less than a tenth of what it adds in truth, at all its
 //            places.
 // Limits     640 x 480 pixels, for which objects.json says where they are
 #pragma once

@@ -1,7 +1,7 @@
 // beam_mirror.h — what a beam sees in flat mirrors
 // What       A flat mirror shows the scene as an eye behind it would see it, at the eye's mirrored place: the rays have
-//            one apex again, so that the same look tells what is seen in it, and the signs it depends on go on below the
-//            mirror's node. Mirrors in mirrors follow level by level.
+//            one apex again, so that the same look tells what is seen in it, and the signs it depends on go on below
+//            the mirror's node. Mirrors in mirrors follow level by level.
 // Guarantee  as that of the look. The mirrored eye is rounded (tests/beam/beam_mirror_test.cpp)
 // Limits     at most kMostMirrors in one another. Curved mirrors have no single apex: they are for rays.
 // Cost       one look for each mirror in a region; views and lists are made once for each tile

@@ -2,8 +2,8 @@
 // What       An expression over leaves of three kinds:
 //            - those of a CsgSolid made of convex leaves (convex_solid.h); some stay that are not convex;
 //            - facets: triangles, each of which stands for what is behind it as the eye or a light sees it. A ray meets
-//              a facet if it passes its three edges on one side; the planes through the eye and an edge are linear in the
-//              picture (beam_view.h), and two facets at an edge share them, so that no ray passes between;
+//              a facet if it passes its three edges on one side; the planes through the eye and an edge are linear in
+//              the picture (beam_view.h), and two facets at an edge share them, so that no ray passes between;
 //            - volumes: all of space if the eye, or the light, is inside a closed mesh, else nothing.
 //            A closed mesh among other leaves is the parity of its volume and its facets. A mesh by itself is the union
 //            of its facets: it may be open, or meet itself, and what is nearest is seen.

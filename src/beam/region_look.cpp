@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <iterator>
 #include <optional>
-#include <ranges>
 #include <span>
 
 #include "beam/cover_sweep.h"
@@ -462,7 +461,8 @@ class Looker {
   }
 
   void advance(std::vector<Event>& events, const std::vector<std::size_t>& done) {
-    for (const std::size_t at : std::ranges::reverse_view(done)) {
+    for (std::size_t k = done.size(); k-- > 0;) {
+      const std::size_t at = done[k];
       Event& event = events[at];
       const Interval leave = window_slots_[event.index]->span->leave;
       if (event.entering && leave.lo < kInfinity) {

@@ -34,8 +34,8 @@ Meeting whole_depth(const CsgSolid& solid, const SeenSurface& seen, const Ray& r
   thread_local LeafCrossings crossings;
   const PlacedLeaf& leaf = solid.leaf(seen.leaf);
   const std::vector<Crossing>& found = crossings.find(leaf, solid.surfaces(), ray);
-  for (std::size_t i = 0; i < found.size(); ++i) {
-    if (found[i].t > 0 && std::isfinite(found[i].t)) return {found[i].t, found[i].face};
+  for (const Crossing& c : found) {
+    if (c.t > 0 && std::isfinite(c.t)) return {c.t, c.face};
   }
   const Vec3d middle = (leaf.bounds.low + leaf.bounds.high) * 0.5;
   return {dot(middle - ray.origin, ray.direction) / dot(ray.direction, ray.direction), 0};
