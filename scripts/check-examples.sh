@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # check-examples.sh — the examples do what they say: the models are what their script writes, each model
-# and scene renders, and the host renderer, built on the installed package in build/check/prefix, keeps
+# and scene renders, in beams, too, and the host renderer, built on the installed package in build/check/prefix, keeps
 # every path out of its solids and writes a picture.
 set -euo pipefail
 cd "$(dirname "$0")/.."
@@ -8,12 +8,13 @@ cd "$(dirname "$0")/.."
 arris=$PWD/build/release/arris
 out=$PWD/build/check/examples
 rm -rf "$out"
-mkdir -p "$out/models"
+mkdir -p "$out/models" "$out/beam"
 
 cp examples/models/make_models.py "$out/models"
 python3 "$out/models/make_models.py"
-for model in "$out"/models/*; do
-  cmp "$model" "examples/models/$(basename "$model")"
+python3 examples/beam/make_scenes.py "$out/beam"
+for made in "$out"/{models,beam}/*; do
+  cmp "$made" "examples/$(basename "$(dirname "$made")")/$(basename "$made")"
 done
 
 inputs=(examples/models/*.{stl,obj} examples/scenes/*.toml examples/csg/*.csg)
@@ -26,6 +27,11 @@ for input in "${inputs[@]}"; do
   echo "$input"
   "$arris" info "$input" >"$out/info.txt"
   "$arris" render "$input" -o "$out/$(basename "$input").png" --size 160x90 --spp 2 --quiet
+done
+for input in examples/beam/*.toml examples/csg/*.csg examples/models/*.{stl,obj}; do
+  echo "$input, in beams"
+  "$arris" render "$input" --integrator beam -o "$out/$(basename "$input").beam.png" --size 160x90 --spp 2 \
+    --aov coverage_lo,coverage_hi,uncertified,regions --quiet
 done
 
 cmake -S examples/host_renderer -B build/check/host_renderer -G Ninja -DCMAKE_BUILD_TYPE=Release \
