@@ -164,5 +164,31 @@ TEST(ray_sight, sees_nothing_between_faces_that_coincide) {
   EXPECT_FALSE(see(std::vector<BeamSolid>{{&none, {}}}, {{0, none.root()}}, ray).has_value());
 }
 
+// A mesh's face against a box's: one plane, which the mesh sees from its back.
+TEST(ray_sight, sees_meshes_of_which_a_face_lies_on_another_leafs) {
+  CsgRandom random(4);
+  CsgMesh cube = random_mesh(random);
+  for (int i = 0; i < 8; ++i) {
+    cube.vertices[std::size_t(i)] = {i & 1 ? 1.0 : 0.0, i & 2 ? 0.7 : -0.7, i & 4 ? 0.7 : -0.7};
+  }
+  const CsgLeaf box{CsgBox{{-1, -0.4, -0.4}, {0, 0.4, 0.4}}, {}, {}};
+  const CsgTree tree = flat_tree(CsgOperation::unite, {box, {cube, {}, {}}});
+  const CsgSolid solid(tree);
+  const BeamShape shape(tree);
+  const std::vector<BeamSolid> placed{{&shape, {}}};
+  int flipped = 0;
+  for (const std::uint32_t leaf : shape.root().leaves()) {
+    flipped += shape.facet(leaf) != nullptr && shape.facet(leaf)->plane.flipped ? 1 : 0;
+  }
+  EXPECT_EQ(flipped, 2);
+  Tally tally;
+  for (int k = 0; k < 3000; ++k) {
+    const Ray ray = random_ray(random, k % 2 == 0);
+    compare(find_first(solid, ray), see(placed, {{0, shape.root()}}, ray), tally);
+  }
+  EXPECT_LE(tally.wrong, tally.rays / 1000);
+  EXPECT_GT(tally.hits, tally.rays / 3);
+}
+
 }  // namespace
 }  // namespace arris::test
