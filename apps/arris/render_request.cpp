@@ -102,7 +102,7 @@ BeamSettings parse_beam_settings(const Arguments& arguments, Integrator integrat
 
 // The beam renderer goes through the picture once.
 void check_beam_options(const Arguments& arguments) {
-  for (const char* option : {"--time", "--checkpoint"}) {
+  for (const char* option : {"--time", "--checkpoint", "--samples"}) {
     if (!arguments.has(option)) continue;
     throw Error(Error::Kind::input, option,
                 "can't be used with --integrator beam, which makes its picture in one pass; leave "

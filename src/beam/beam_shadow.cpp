@@ -65,7 +65,10 @@ void splice(LookTree& tree, std::uint32_t at, std::uint32_t bit,
   }
   replace_node(tree, at, *seen_by_light, [&](const LookNode& seen) {
     LookNode end = surface;
-    if (seen.kind == LookNode::Kind::unknown) return end;
+    if (seen.kind == LookNode::Kind::unknown) {
+      end.light_open = true;
+      return end;
+    }
     const bool reached =
         seen.kind == LookNode::Kind::nothing || seen.seen.surface == surface.seen.surface;
     end.lit_known |= bit;

@@ -1,5 +1,6 @@
 #include "beam/beam_shape.h"
 
+#include <algorithm>
 #include <limits>
 #include <utility>
 
@@ -14,6 +15,20 @@ constexpr Box3d kEverywhere{{-kInfinity, -kInfinity, -kInfinity},
 
 std::array<double, 6> place_of(Vec3d a, Vec3d b) {
   return {a.x, a.y, a.z, b.x, b.y, b.z};
+}
+
+// Triangles that lie in one plane but for the rounding of float coordinates share it.
+PlaneRef plane_of(const MeshTriangle& triangle, SurfaceTable& surfaces) {
+  const auto& [a, b, c] = triangle.corners;
+  const Vec3d n = cross(b - a, c - a);
+  const double size = length(n);
+  if (!(size > 0)) return {};
+  Box3d box{min(a, min(b, c)), max(a, max(b, c))};
+  const double reach = std::max(max_component(box.high), max_component(-box.low));
+  // The table moves planes by kMergedThickness of a leaf's thickness.
+  const Vec3d half_thickness(1e-7 * reach / (2 * kMergedThickness));
+  box = {box.low - half_thickness, box.high + half_thickness};
+  return surfaces.add(CsgPlane{n * (1 / size), dot(n * (1 / size), a)}, box);
 }
 
 CsgExpression make_union(std::size_t count) {
@@ -61,9 +76,13 @@ BeamShape::BeamShape(const CsgTree& tree)
 BeamShape::BeamShape(std::span<const MeshTriangle> triangles)
     : csg_(CsgTree{}), bounds_{Vec3d(kInfinity), Vec3d(-kInfinity)} {
   EdgePlaces known;
+  SurfaceTable surfaces;
   for (const MeshTriangle& triangle : triangles) {
-    if (add_facet(triangle, std::nullopt, known)) bounds_ = hull(bounds_, boxes_.back());
+    if (add_facet(triangle, plane_of(triangle, surfaces), known)) {
+      bounds_ = hull(bounds_, boxes_.back());
+    }
   }
+  planes_ = surfaces.planes();
   root_ = make_union(facets_.size());
   make_tree();
 }
@@ -74,12 +93,9 @@ void BeamShape::make_tree() {
   tree_ = LeafTree(root_, boxes);
 }
 
-bool BeamShape::add_facet(const MeshTriangle& triangle, std::optional<PlaneRef> plane,
-                          EdgePlaces& known) {
+bool BeamShape::add_facet(const MeshTriangle& triangle, PlaneRef plane, EdgePlaces& known) {
   const auto& corners = triangle.corners;
-  const Vec3d n = cross(corners[1] - corners[0], corners[2] - corners[0]);
-  const double size = length(n);
-  if (!(size > 0)) return false;
+  if (!(length(cross(corners[1] - corners[0], corners[2] - corners[0])) > 0)) return false;
   Facet facet;
   facet.triangle = triangle.number;
   for (std::size_t k = 0; k < 3; ++k) {
@@ -90,11 +106,7 @@ bool BeamShape::add_facet(const MeshTriangle& triangle, std::optional<PlaneRef> 
     if (is_new) edges_.push_back({a, b});
     facet.edges[k] = at->second;
   }
-  if (!plane) {
-    plane = PlaneRef{std::uint32_t(planes_.size()), false};
-    planes_.push_back({n * (1 / size), dot(n * (1 / size), corners[0])});
-  }
-  facet.plane = *plane;
+  facet.plane = plane;
   facets_.push_back(facet);
   boxes_.push_back(
       {min(corners[0], min(corners[1], corners[2])), max(corners[0], max(corners[1], corners[2]))});

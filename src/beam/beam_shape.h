@@ -66,6 +66,7 @@ class BeamShape {
   [[nodiscard]] std::size_t leaf_count() const { return first_volume() + volumes_.size(); }
   [[nodiscard]] std::size_t facet_count() const { return facets_.size(); }
   [[nodiscard]] const Box3d& leaf_box(std::uint32_t leaf) const;
+  [[nodiscard]] bool is_mesh() const { return csg_.leaf_count() == 0; }
   // Null: another kind of leaf.
   [[nodiscard]] const ConvexLeaf* convex(std::uint32_t leaf) const {
     return leaf < csg_.leaf_count() ? std::get_if<ConvexLeaf>(&csg_.leaf(leaf).shape) : nullptr;
@@ -100,7 +101,7 @@ class BeamShape {
   [[nodiscard]] std::size_t first_volume() const { return csg_.leaf_count() + facets_.size(); }
   void make_tree();
   // False: it has no area.
-  bool add_facet(const MeshTriangle& triangle, std::optional<PlaneRef> plane, EdgePlaces& known);
+  bool add_facet(const MeshTriangle& triangle, PlaneRef plane, EdgePlaces& known);
 
   CsgSolid csg_;
   std::vector<CsgPlane> planes_;

@@ -43,7 +43,7 @@ class BeamTracer::Tracer {
 
   // Of at least a pixel.
   void visit(const Rect& rect, const std::vector<BeamPart>& above, double depth_end) {
-    if (rect.x0 >= shared_.width_px_ || rect.y0 >= shared_.height_px_) return;
+    if (rect.x0 >= shared_.width_px_ || rect.y0 >= shared_.height_px_ || is_stopped()) return;
     const BeamList list = prune_parts(shared_.view_, above, rect, depth_end);
     const std::vector<BeamPart>& parts = list.parts;
     ++stats_.regions;
@@ -67,8 +67,12 @@ class BeamTracer::Tracer {
   [[nodiscard]] const BeamStats& stats() const { return stats_; }
 
  private:
+  [[nodiscard]] bool is_stopped() const {
+    return shared_.options_.stop != nullptr && shared_.options_.stop->load();
+  }
   // Of less than a pixel.
   void visit_part(const Rect& rect, const std::vector<BeamPart>& above, double depth_end) {
+    if (is_stopped()) return;
     const BeamList list = prune_parts(shared_.view_, above, rect, depth_end);
     const std::vector<BeamPart>& parts = list.parts;
     ++stats_.regions;
@@ -127,7 +131,11 @@ class BeamTracer::Tracer {
   [[nodiscard]] bool is_certified() const {
     return std::ranges::all_of(surfaces_, [&](const PixelSurface& s) {
       return s.hi - s.lo <= shared_.options_.tolerance &&
-             !(s.mirror_open && s.hi > shared_.options_.tolerance);
+             !((s.mirror_open || s.light_open) && s.hi > shared_.options_.tolerance) &&
+             std::ranges::none_of(s.lit_shares, [&](const LitShare& share) {
+               return share.hi - share.lo > shared_.options_.tolerance ||
+                      share.doubtful > shared_.options_.tolerance;
+             });
     });
   }
 
@@ -149,6 +157,7 @@ class BeamTracer::Tracer {
       surface.sample = end.sample;
       surface.sample_weight = end.estimate;
       surface.mirror_open = node.mirror_open;
+      surface.light_open = node.light_open;
       surface.mirror_number = node.mirrors;
       if (!shared_.shadows_.is_joint()) {
         surface.lit_shares.resize(shared_.shadows_.light_count());
@@ -179,7 +188,9 @@ class BeamTracer::Tracer {
     }
     for (const EndArea& end : areas_of(lit, rect)) {
       const LookNode& node = lit.nodes[end.node];
-      if (node.kind != LookNode::Kind::surface || node.lit_known == 0) continue;
+      if (node.kind != LookNode::Kind::surface || (node.lit_known == 0 && !node.light_open)) {
+        continue;
+      }
       PixelSurface surface;
       surface.seen = node.seen;
       surface.mirror_number = node.mirrors;
@@ -187,6 +198,10 @@ class BeamTracer::Tracer {
       PixelSurface& entry = entry_of(surface);
       entry.lit_shares.resize(shared_.shadows_.light_count());
       LitShare& share = entry.lit_shares[light];
+      if (node.light_open) {
+        share.doubtful += end.hi;
+        continue;
+      }
       share.open -= end.estimate;
       if (node.lit == 0) continue;
       share.lo += end.lo;
@@ -245,7 +260,8 @@ class BeamTracer::Tracer {
   using Key = std::array<std::uint32_t, 6>;
   static Key key_of(const PixelSurface& s) {
     constexpr std::uint32_t kNone = ~std::uint32_t{0};
-    const std::uint32_t mirrors = s.mirror_number * 2 + (s.mirror_open ? 1 : 0);
+    const std::uint32_t mirrors =
+        s.mirror_number * 4 + (s.mirror_open ? 2 : 0) + (s.light_open ? 1 : 0);
     if (!s.seen) return {kNone, kNone, kNone, s.lit, s.lit_known, mirrors};
     const std::uint32_t face = s.seen->face * 2 + (s.seen->entering ? 1 : 0);
     return {s.seen->solid, s.seen->leaf, face, s.lit, s.lit_known, mirrors};
@@ -279,6 +295,7 @@ class BeamTracer::Tracer {
     added.lit = surface.lit;
     added.lit_known = surface.lit_known;
     added.mirror_open = surface.mirror_open;
+    added.light_open = surface.light_open;
     added.mirror_number = surface.mirror_number;
     if (surface.mirror_number != 0) added.mirrors = mirror_lists_.chain(surface.mirror_number);
     return added;
@@ -295,6 +312,7 @@ class BeamTracer::Tracer {
     }
     known.samples.insert(known.samples.end(), surface.samples.begin(), surface.samples.end());
     if (surface.sample_weight > known.sample_weight) {
+      known.seen = surface.seen;  // with the root that is seen there
       known.sample = surface.sample;
       known.sample_weight = surface.sample_weight;
     }
@@ -309,7 +327,7 @@ class BeamTracer::Tracer {
       s.lo = std::clamp(s.lo, 0.0, 1.0);
       s.hi = std::clamp(s.hi, 0.0, 1.0);
       certain += s.lo;
-      if (s.seen) continue;
+      if (s.seen || s.mirror_number != 0) continue;
       nothing_lo += s.lo;
       nothing_hi += s.hi;
     }

@@ -11,6 +11,7 @@
 //            beams and lists handed down; where corners decide there, bounds decide here (docs/beam.md)
 #pragma once
 
+#include <atomic>
 #include <cstdint>
 #include <functional>
 #include <optional>
@@ -28,7 +29,8 @@ namespace arris {
 // The part of a pixel's surface that a light reaches, in parts of the pixel.
 struct LitShare {
   double lo = 0, hi = 0, estimate = 0;
-  double open = 0;  // where it is not known, which the estimate leaves out
+  double open = 0;      // where it is not known, which the estimate leaves out
+  double doubtful = 0;  // of that, where it was looked for
 };
 
 // What a pixel shows; nothing: what is behind all solids.
@@ -43,6 +45,7 @@ struct PixelSurface {
   std::uint32_t mirror_number = 0;      // LookNode::mirrors
   MirrorChain mirrors;                  // in which it is seen
   bool mirror_open = false;             // a mirror, and what is seen in it is not known
+  bool light_open = false;  // flat, and whether a light reaches it is not known
 };
 
 struct BeamPixel {
@@ -52,7 +55,8 @@ struct BeamPixel {
   double region_side =
       1;  // of the smallest region that it was cut into, or of the one that it is part of
   bool begins_region = true;  // it is at the left or upper border of its region
-  bool certified = true;  // no surface's bounds are wider than the tolerance, and no mirror is open
+  bool certified =
+      true;  // no surface's bounds are wider than the tolerance, no mirror or light open
 };
 
 struct BeamStats {
@@ -73,7 +77,8 @@ struct BeamOptions {
   double least_open_region = 1.0 / 8;  // where a leaf that is not convex is among what may be seen
   int tile_px = 16;                    // a power of two
   int threads = 0;                     // 0: all
-  IsMirror is_mirror = {};             // of flat surfaces; none: no mirrors are looked into
+  const std::atomic<bool>* stop = nullptr;  // set: pixels may be left out
+  IsMirror is_mirror = {};                  // of flat surfaces; none: no mirrors are looked into
 };
 
 struct BeamTile {

@@ -107,6 +107,7 @@ class BeamView {
 
   // Where rays begin: kStartLeaf. Precondition: the view is a mirrored eye's.
   [[nodiscard]] const LitPlane& mirror() const { return *mirror_; }
+  [[nodiscard]] bool is_mirrored() const { return mirror_.has_value(); }
   [[nodiscard]] const BeamShape& shape(std::uint32_t solid) const { return *solids_[solid].shape; }
   // Is the origin of all rays inside the volume? A directional light is outside of all.
   [[nodiscard]] bool starts_in_volume(std::uint32_t solid, std::uint32_t leaf) const;

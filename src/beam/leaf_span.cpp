@@ -66,10 +66,19 @@ class SpanMaker {
     span_.enter = quotient(absolute(range_over(form.height, oracle_.rect())),
                            absolute(range_over(form.slope, oracle_.rect())));
     if (!(span_.enter.lo <= depth_end_)) return std::nullopt;
+    const BeamSurface surface{place_.solid, facet.plane.plane, Root::none};
+    bool beyond = true;
+    if (counts_from_mirror(view_, place_)) {
+      const LeafSpan start = make_plane_span(view_, view_.mirror(), oracle_.rect());
+      if (surface == start.entering[0].surface || span_.enter.hi < start.enter.lo) {
+        return std::nullopt;
+      }
+      beyond = span_.enter.lo > start.enter.hi;
+    }
     span_.leave = {kInfinity, kInfinity};
-    span_.entering.push_back({span_.enter, {place_.solid, facet.plane.plane, Root::none}, 0});
+    span_.entering.push_back({span_.enter, surface, 0});
     span_.facet_positive = wanted == Sign::positive;
-    span_.certain = within && span_.enter.hi < kInfinity;
+    span_.certain = within && beyond && span_.enter.hi < kInfinity;
     return std::move(span_);
   }
   std::optional<LeafSpan> make_volume() {
@@ -320,6 +329,10 @@ class SpanMaker {
 };
 
 }  // namespace
+
+bool counts_from_mirror(const BeamView& view, const LeafPlace& place) {
+  return view.is_mirrored() && view.shape(place.solid).is_mesh();
+}
 
 LeafSpan make_plane_span(const BeamView& view, const LitPlane& plane, const Rect& rect) {
   const PlaneForm& form = view.plane(plane.solid, plane.plane);

@@ -149,6 +149,10 @@ struct LeafPlace {
 std::optional<LeafSpan> make_span(const BeamView& view, LeafPlace place, double depth_end,
                                   const SignOracle& oracle);
 
+// A mesh by itself is the union of what is behind its facets: those that lie before a mirror, behind which rays begin,
+// don't count.
+bool counts_from_mirror(const BeamView& view, const LeafPlace& place);
+
 // Of all that is beyond a plane that every ray meets.
 LeafSpan make_plane_span(const BeamView& view, const LitPlane& plane, const Rect& rect);
 

@@ -72,6 +72,16 @@ class PartSight {
   [[nodiscard]] SeenSurface name(const Toggle& toggle, bool entering) const {
     const std::uint32_t leaf = expression_.leaves()[toggle.slot];
     SeenSurface seen{index_, leaf, toggle.face, {}, entering};
+    if (const ConvexLeaf* convex = shape_.convex(leaf)) {
+      const bool is_plane = toggle.face < convex->planes.size();
+      const bool leaves = inside_[toggle.slot] == 0;  // after it
+      seen.surface = {index_, is_plane ? convex->planes[toggle.face].plane : *convex->quadric,
+                      is_plane ? BeamSurface::Root::none
+                      : leaves ? BeamSurface::Root::farther
+                               : BeamSurface::Root::nearer};
+    } else if (const Facet* facet = shape_.facet(leaf)) {
+      seen.surface = {index_, facet->plane.plane, BeamSurface::Root::none};
+    }
     if (shape_.is_whole(leaf)) {
       seen.face = kAnyFace;
       seen.surface = {index_, leaf, BeamSurface::Root::whole};

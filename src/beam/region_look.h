@@ -48,6 +48,7 @@ struct LookNode {
   std::uint32_t first = 0, count = 0;        // unknown: of LookTree::candidates
   std::uint32_t lit = 0;                     // surface: which lights reach it, see beam_shadow.h
   std::uint32_t lit_known = 0;
+  bool light_open = false;  // surface: one of the lights that were looked from may reach it or not
   std::uint32_t mirrors = 0;  // surface or nothing: in which it is seen, see beam_mirror.h; 0: none
   bool mirror_open = false;   // surface: a mirror in which something unknown is seen
 };

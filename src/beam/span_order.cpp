@@ -205,6 +205,11 @@ Met facet_met(const BeamView& view, const LeafSpan& span, LeafPlace place, SignO
     if (side == Sign::unknown) return Met::unknown;
     if ((facet.turned[k] ? -side : side) != wanted) return Met::no;
   }
+  if (counts_from_mirror(view, place)) {
+    const LeafSpan start = make_plane_span(view, view.mirror(), oracle.rect());
+    const Order order = order_of(view, span.entering[0], start.entering[0], oracle);
+    if (order != Order::after) return order == Order::unknown ? Met::unknown : Met::no;
+  }
   return decide_end_met(view, span.entering[0], oracle);
 }
 

@@ -218,7 +218,7 @@ class BeamRenderer final : public Renderer {
     }
     // Four rays a region don't get better by smaller ones as bounds do.
     const double least = settings_.rule == BeamRule::corners ? 1.0 / 8 : BeamOptions{}.least_region;
-    BeamOptions beam{.least_region = least, .threads = options.threads};
+    BeamOptions beam{.least_region = least, .threads = options.threads, .stop = options.stop};
     if (image.max_depth > 0) {
       beam.is_mirror = [&](const SeenSurface& seen) { return is_mirror(beams, seen); };
     }

@@ -29,13 +29,12 @@ struct Meeting {
   std::uint32_t face = 0;
 };
 
-// The leaf's first crossing in that sense; if rounding leaves none, its box's middle stands for it.
+// Where the ray meets the leaf's surface first in that sense; if rounding leaves none, its box's middle stands for it.
 Meeting whole_depth(const CsgSolid& solid, const SeenSurface& seen, const Ray& ray) {
-  thread_local LeafCrossings crossings;
+  thread_local BoundarySearch search;
   const PlacedLeaf& leaf = solid.leaf(seen.leaf);
-  const std::vector<Crossing>& found = crossings.find(leaf, solid.surfaces(), ray);
-  for (const Crossing& c : found) {
-    if (c.t > 0 && std::isfinite(c.t)) return {c.t, c.face};
+  for (const CsgBoundary& b : search.find(solid, view_of(solid.root()), ray)) {
+    if (b.t > 0 && b.leaf == seen.leaf && b.entering == seen.entering) return {b.t, b.face};
   }
   const Vec3d middle = (leaf.bounds.low + leaf.bounds.high) * 0.5;
   return {dot(middle - ray.origin, ray.direction) / dot(ray.direction, ray.direction), 0};

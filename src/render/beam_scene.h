@@ -26,7 +26,8 @@ class BeamScene {
   [[nodiscard]] const EyeRays& eye() const { return eye_; }
   [[nodiscard]] std::span<const BeamSolid> solids() const { return solids_; }
 
-  // Where the ray meets the surface's plane or quadric; of a surface seen as a whole the nearest point.
+  // Where the ray meets the surface's plane or quadric; of a surface seen as a whole where it comes to light
+  // first.
   [[nodiscard]] SurfaceHit hit_at(const SeenSurface& seen, const Ray& world) const;
   [[nodiscard]] MaterialId material_of(const SeenSurface& seen) const;
   // Its shading varies from point to point.
