@@ -17,6 +17,8 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 // How often a pixel's outlines are followed again, each time four times as closely.
 constexpr int kCloserLooks = 4;
+// As long as that leaves at most this part of what was open.
+constexpr double kGain = 0.7;
 
 std::array<Rect, 4> quarters_of(const Rect& r) {
   const double x = r.middle_x(), y = r.middle_y();
@@ -49,9 +51,10 @@ class BeamTracer::Tracer {
     ++stats_.regions;
     LookTree tree = look(shared_.view_, list, rect, depth_end);
     const double next_end = std::min(depth_end, tree.depth_end);
-    if (tree.complete && add_light(tree, rect)) {
+    if ((tree.complete || tree.hopeless) && add_light(tree, rect)) {
       for (double y = rect.y0; y < rect.y1; ++y) {
-        for (double x = rect.x0; x < rect.x1; ++x) add_pixel(tree, {x, y, x + 1, y + 1}, rect);
+        for (double x = rect.x0; x < rect.x1; ++x)
+          add_pixel(tree, {x, y, x + 1, y + 1}, rect, parts);
       }
     } else if (rect.width() > 1) {
       for (const Rect& part : quarters_of(rect)) visit(part, parts, next_end);
@@ -77,7 +80,7 @@ class BeamTracer::Tracer {
     const std::vector<BeamPart>& parts = list.parts;
     ++stats_.regions;
     LookTree tree = look(shared_.view_, list, rect, depth_end);
-    const bool smallest = rect.width() <= least_region(parts);
+    const bool smallest = tree.hopeless || rect.width() <= least_region(parts);
     const bool complete = (tree.complete || smallest) && add_light(tree, rect);
     if (complete || smallest) {
       smallest_part_ = std::min(smallest_part_, rect.width());
@@ -114,13 +117,17 @@ class BeamTracer::Tracer {
     return mirrors.add_mirrors(tree, rect, mirror_lists_, stats_.regions) && shadows;
   }
 
-  void add_pixel(const LookTree& tree, const Rect& pixel, const Rect& region) {
+  void add_pixel(const LookTree& tree, const Rect& pixel, const Rect& region,
+                 const std::vector<BeamPart>& parts) {
     if (pixel.x0 >= shared_.width_px_ || pixel.y0 >= shared_.height_px_) return;
     AreaOptions options;
+    double before = kInfinity;
     for (int i = 0; i <= kCloserLooks; ++i) {
       surfaces_.clear();
-      add_ends(tree, areas_of(tree, pixel, options), {});
-      if (is_certified()) break;
+      add_ends(tree, areas_of(tree, pixel, options), parts);
+      const double open = open_area();
+      if (tree.hopeless || is_certified() || open > kGain * before) break;
+      before = open;
       options.tolerance /= 4;
       options.least_side /= 4;
     }
@@ -128,6 +135,11 @@ class BeamTracer::Tracer {
     finish_pixel(pixel, region);
   }
 
+  [[nodiscard]] double open_area() const {
+    double open = 0;
+    for (const PixelSurface& s : surfaces_) open += s.hi - s.lo;
+    return open;
+  }
   [[nodiscard]] bool is_certified() const {
     return std::ranges::all_of(surfaces_, [&](const PixelSurface& s) {
       return s.hi - s.lo <= shared_.options_.tolerance &&

@@ -87,6 +87,11 @@ Interval range_over(const Quadratic& p, const Rect& rect) {
   return c.value + parabola_range(c.xx, c.dx) + parabola_range(c.yy, c.dy) + symmetric(c.xy);
 }
 
+bool is_noise(const Quadratic& p, const Rect& rect) {
+  const double x = rect.middle_x(), y = rect.middle_y();
+  return range_over(p, rect).width() <= 4 * range_over(p, {x, y, x, y}).width();
+}
+
 namespace {
 
 double middle(Interval a) {

@@ -66,6 +66,9 @@ inline Quadratic squared(const Linear& a) {
 Interval range_over(const Linear& p, const Rect& rect);
 Interval range_over(const Quadratic& p, const Rect& rect);
 
+// Are all its values over the rectangle rounding? Cutting the rectangle then tells no more.
+bool is_noise(const Quadratic& p, const Rect& rect);
+
 // Two planes, value + dx (x - middle) + dy (y - middle) for both ends of value: in the rectangle p is positive where
 // the lower one is, and negative where the upper one is.
 struct Slab {

@@ -96,8 +96,10 @@ class Looker {
 
   LookTree run() {
     follow();
-    tree_.complete = std::ranges::none_of(
-        tree_.nodes, [](const LookNode& n) { return n.kind == LookNode::Kind::unknown; });
+    const auto unknown = std::ranges::count(tree_.nodes, LookNode::Kind::unknown, &LookNode::kind);
+    tree_.complete = unknown == 0;
+    tree_.hopeless =
+        unknown > 0 && std::ranges::count(tree_.nodes, true, &LookNode::is_noise) == unknown;
     return std::move(tree_);
   }
 
@@ -127,10 +129,17 @@ class Looker {
     assumptions_.back().positive = true;
     const std::uint32_t positive = follow();
     assumptions_.pop_back();
-    if (!join(node, open, negative, positive)) {
+    const bool joined = join(node, open, negative, positive);
+    // Below a sign that is rounding, smaller rectangles won't tell more.
+    const bool noise =
+        open.polynomial && is_noise(*open.polynomial, rect_) &&
+        std::ranges::any_of(tree_.nodes.begin() + node, tree_.nodes.end(),
+                            [](const LookNode& n) { return n.kind == LookNode::Kind::unknown; });
+    if (!joined || noise) {
       tree_.nodes.resize(node + 1);
       find_window(oracle);  // for its leaves
       tree_.nodes[node] = give_up();
+      tree_.nodes[node].is_noise = noise;
     }
     return node;
   }

@@ -46,6 +46,7 @@ struct LookNode {
   Quadratic polynomial;                      // sign
   std::uint32_t negative = 0, positive = 0;  // sign: the nodes for either
   std::uint32_t first = 0, count = 0;        // unknown: of LookTree::candidates
+  bool is_noise = false;                     // unknown: a matter of rounding
   std::uint32_t lit = 0;                     // surface: which lights reach it, see beam_shadow.h
   std::uint32_t lit_known = 0;
   bool light_open = false;  // surface: one of the lights that were looked from may reach it or not
@@ -56,7 +57,8 @@ struct LookNode {
 struct LookTree {
   std::vector<LookNode> nodes;  // [root] first in the end: node 0 is the root
   std::vector<SeenSurface> candidates;
-  bool complete = true;                                        // nothing is unknown
+  bool complete = true;   // nothing is unknown
+  bool hopeless = false;  // all that is unknown is a matter of rounding, in smaller rectangles, too
   double depth_end = std::numeric_limits<double>::infinity();  // no ray sees farther
 };
 

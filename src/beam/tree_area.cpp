@@ -115,10 +115,13 @@ class Integrator {
     return node;
   }
 
-  // Smaller pieces would not tell more: what is left is the rounding of the coefficients.
-  static bool is_noise(const Quadratic& p, const Rect& rect) {
-    const double x = rect.middle_x(), y = rect.middle_y();
-    return range_over(p, rect).width() <= 4 * range_over(p, {x, y, x, y}).width();
+  // Is one of the signs that are open in the rectangle more than rounding?
+  [[nodiscard]] bool helps_to_cut(const Rect& rect, std::uint32_t node) const {
+    node = descend(node, rect);
+    if (is_end(node)) return false;
+    const LookNode& n = tree_.nodes[node];
+    return !is_noise(n.polynomial, rect) || helps_to_cut(rect, n.negative) ||
+           helps_to_cut(rect, n.positive);
   }
 
   void visit(const Rect& rect, std::uint32_t node) {
@@ -135,7 +138,7 @@ class Integrator {
     const double side = std::max(rect.width(), rect.height());
     // Each strip between two ends counts for both.
     if (open <= 2 * options_.tolerance * side || side <= options_.least_side ||
-        is_noise(tree_.nodes[node].polynomial, rect)) {
+        !helps_to_cut(rect, node)) {
       accept(rect);
       return;
     }
