@@ -125,6 +125,46 @@ TEST(beam_shadow, shares_of_lit_surface_hold_what_rays_find) {
   EXPECT_GT(partly, 60);
 }
 
+// So many bars that those in a light's way are found by place.
+TEST(beam_shadow, none_of_many_bars_is_lost) {
+  BeamScene scene;
+  scene.width = scene.height = 8;
+  scene.add(one_leaf(CsgBox{{-6, -6, -1}, {6, 6, 0}}));
+  std::vector<CsgLeaf> bars;
+  for (int i = 0; i < 60; ++i) {
+    const double x = -3 + 0.1 * i;
+    bars.push_back({CsgBox{{x, -4, 1}, {x + 0.05, 4, 1.1}}, {}, {}});
+  }
+  scene.add(flat_tree(CsgOperation::unite, bars));
+  scene.eye = look_at({0, -9, 0.7}, {0, 0, 0}, 16, 8, 8);  // under the bars
+  for (const bool is_directional : {true, false}) {
+    LightPlace light;
+    light.is_directional = is_directional;
+    light.direction = {0.02, 0.01, -1};
+    light.position = {0.4, 0.3, 40};
+    const BeamTracer tracer(scene.placed, scene.eye, 8, 8, {}, {&light, 1});
+    double in_shadow = 0;
+    for (const BeamTile& tile : tracer.make_tiles()) {
+      tracer.trace_tile(tile, [&](const BeamPixel& pixel) {
+        double low = 0, high = 0;
+        for (const PixelSurface& s : pixel.surfaces) {
+          if (!s.seen || s.seen->solid != 0) continue;
+          if (s.lit_known == 0) {
+            EXPECT_TRUE(s.hi < 1.0 / 512 || !pixel.certified);
+            continue;
+          }
+          if (s.lit == 0) in_shadow += s.lo;
+          low += s.lit != 0 ? s.lo : 0;
+          high += s.lit != 0 ? s.hi : 0;
+        }
+        const double lit = lit_share(scene, light, pixel.x, pixel.y);
+        EXPECT_NEAR(lit, (low + high) / 2, 3.0 / kGrid);
+      });
+    }
+    EXPECT_GT(in_shadow, 3);
+  }
+}
+
 // A shadow of a hundredth of a pixel that no grid of samples meets.
 TEST(beam_shadow, shadows_thinner_than_any_grid_are_found) {
   BeamScene scene;

@@ -45,6 +45,9 @@ void check_pixel(const BeamScene& scene, const BeamPixel& pixel, int grid, Repor
   for (const PixelSurface& s : pixel.surfaces) {
     if (s.lo > slack && !truth.contains(key_of(s.seen))) ++report.outside;
     report.worst_open = std::max(report.worst_open, s.hi - s.lo);
+    if (pixel.certified) {
+      EXPECT_LE(s.hi - s.lo, BeamOptions{}.tolerance) << pixel.x << ", " << pixel.y;
+    }
   }
   ++report.pixels;
   report.surfaces += int(pixel.surfaces.size());

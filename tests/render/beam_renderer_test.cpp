@@ -73,6 +73,18 @@ TEST(beam_renderer, other_light_is_path_traced) {
   EXPECT_NEAR(mean_of(beam), mean_of(path), 0.01 * mean_of(path));
 }
 
+// What a torus takes away is seen from its other side; seen as a whole, it has no root that says so.
+TEST(beam_renderer, grooves_are_hollow) {
+  Scene scene = beam_scene();
+  scene.csg_trees[0] =
+      flat_tree(CsgOperation::subtract, {{CsgBox{{-2, -2, -0.5}, {2, 2, 0}}, {}, {0}},
+                                         {CsgTorus{1.2, 0.3}, {}, {0}}});
+  scene.objects.pop_back();
+  const Image beam = render(scene, *make_beam_renderer(), 1).picture.color;
+  const Image path = render(scene, *make_path_renderer(), 1024).picture.color;
+  EXPECT_LT(rmse(beam, path), 0.02);
+}
+
 // 64 points for an area light that is not near.
 TEST(beam_renderer, area_lights_can_be_sets_of_beams) {
   Scene scene = beam_scene();
