@@ -76,10 +76,12 @@ CommandRow render_row() {
          {"--max-depth", "N", "bounces of light (default: the scene's, else 8)"},
          {"--seed", "N", "another pattern of noise (default: 0)"},
          {"--samples", "A..B",
-          "only these samples of the sequence; arris merge joins such .exr parts, which hold their "
+          "only these samples of the sequence (path); arris merge joins such .exr parts, which "
+          "hold their "
           "exact sums besides, to the bytes of the whole"},
          {"--integrator", "path|beam",
-          "path: path tracing; beam: nothing that is small is lost, with certain bounds on what "
+          "path: path tracing; beam: what is small is found or its pixel marked, with certain "
+          "bounds on what "
           "each "
           "pixel shows (default: path)"},
          {"--beam-rule", "certified|corners",
@@ -149,7 +151,8 @@ CommandRow shoot_row() {
       "Each input line holds a ray: ox oy oz dx dy dz. Empty lines and lines that begin with # are "
       "skipped. Each output line is JSON: t in lengths of the direction (null: nothing hit), "
       "position, unit "
-      "normal outward from the solid, object, feature (face, edge, corner), and inside: the ray "
+      "normal outward from the solid, object, feature (face, edge, corner, csg), and inside: the "
+      "ray "
       "started in "
       "the solid, so that t is where it leaves. All 17 digits count on flat faces; rounded edges "
       "and corners are met in single precision, about seven digits of the scene's size. INPUT may "

@@ -2,7 +2,8 @@
 // What       A flat mirror shows the scene as an eye behind it would see it, at the eye's mirrored place: the rays have
 //            one apex again, so that the same look tells what is seen in it, and the signs it depends on go on below
 //            the mirror's node. Mirrors in mirrors follow level by level.
-// Guarantee  as that of the look. The mirrored eye is rounded (tests/beam/beam_mirror_test.cpp)
+// Guarantee  as that of the look, for surfaces, not for their light. The mirrored eye is rounded
+//            (tests/beam/beam_mirror_test.cpp)
 // Limits     at most kMostMirrors in one another. Curved mirrors have no single apex: they are for rays.
 // Cost       one look for each mirror in a region; views and lists are made once for each tile
 // Source     J.-M. Hasenfratz and D. Ghazanfarpour, "Rendering CSG scenes with general antialiasing", 1996, §3, whose

@@ -45,7 +45,7 @@ struct PixelSurface {
   std::uint32_t mirror_number = 0;      // LookNode::mirrors
   MirrorChain mirrors;                  // in which it is seen
   bool mirror_open = false;             // a mirror, and what is seen in it is not known
-  bool light_open = false;  // flat, and whether a light reaches it is not known
+  bool light_open = false;              // flat, and whether a light reaches it is not known
 };
 
 struct BeamPixel {

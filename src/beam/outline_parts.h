@@ -2,7 +2,7 @@
 // What       A polygon is its convex hull without its pockets, which are polygons again, until all are convex. Holes
 //            are taken from the outline around them.
 // Guarantee  no edge is added but the lids of the pockets, which lie on edges of the hull above (where a difference
-//            leaves nothing of them). Together the parts are the region (tests/beam/outline_parts_test.cpp).
+//            leaves nothing of them). Together the parts are the region (tests/beam/convex_solid_test.cpp).
 // Limits     outlines must not cross each other or themselves; they may touch in vertices. Nothing if they cross, or
 //            have more than kMostOutlineEdges edges.
 // Cost       edges squared, for the check

@@ -2,7 +2,8 @@
 // What       Faces that coincide, from however many leaves, refer to one surface; a ray meets that at one t, to the
 //            last bit. So coincident faces are decided once: A - A is empty, solids that touch have no wall between.
 // Guarantee  surfaces are merged only if they deviate, within the leaf's box, by less than kMergedDeviation of its
-//            coordinates (files hold six digits) and kMergedThickness of its thickness, so no plate collapses
+//            coordinates (files hold six digits) and kMergedThickness of its thickness, so no single leaf collapses; a
+//            wall or gap between two leaves may
 // Frames     the tree's own space
 #pragma once
 

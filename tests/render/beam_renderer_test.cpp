@@ -77,8 +77,8 @@ TEST(beam_renderer, other_light_is_path_traced) {
 TEST(beam_renderer, grooves_are_hollow) {
   Scene scene = beam_scene();
   scene.csg_trees[0] =
-      flat_tree(CsgOperation::subtract, {{CsgBox{{-2, -2, -0.5}, {2, 2, 0}}, {}, {0}},
-                                         {CsgTorus{1.2, 0.3}, {}, {0}}});
+      flat_tree(CsgOperation::subtract,
+                {{CsgBox{{-2, -2, -0.5}, {2, 2, 0}}, {}, {0}}, {CsgTorus{1.2, 0.3}, {}, {0}}});
   scene.objects.pop_back();
   const Image beam = render(scene, *make_beam_renderer(), 1).picture.color;
   const Image path = render(scene, *make_path_renderer(), 1024).picture.color;
