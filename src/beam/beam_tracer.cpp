@@ -20,12 +20,6 @@ constexpr int kCloserLooks = 4;
 // As long as that leaves at most this part of what was open.
 constexpr double kGain = 0.7;
 
-std::array<Rect, 4> quarters_of(const Rect& r) {
-  const double x = r.middle_x(), y = r.middle_y();
-  return {Rect{r.x0, r.y0, x, y}, Rect{x, r.y0, r.x1, y}, Rect{r.x0, y, x, r.y1},
-          Rect{x, y, r.x1, r.y1}};
-}
-
 }  // namespace
 
 void BeamStats::add(const BeamStats& other) {

@@ -18,11 +18,6 @@ namespace {
 std::array<Vec2d, 4> corners_of(const Rect& r) {
   return {Vec2d{r.x0, r.y0}, Vec2d{r.x1, r.y0}, Vec2d{r.x1, r.y1}, Vec2d{r.x0, r.y1}};
 }
-std::array<Rect, 4> quarters_of(const Rect& r) {
-  const double x = r.middle_x(), y = r.middle_y();
-  return {Rect{r.x0, r.y0, x, y}, Rect{x, r.y0, r.x1, y}, Rect{r.x0, y, x, r.y1},
-          Rect{x, y, r.x1, r.y1}};
-}
 
 // A part of the picture under way.
 struct BeamRegion {

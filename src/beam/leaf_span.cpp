@@ -11,10 +11,6 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 using Of = SignKey::Of;
 using Root = BeamSurface::Root;
 
-SignKey key_of(Of of, const BeamSurface& s) {
-  return {of, s.solid, s.index, 0, 0};
-}
-
 // numerator / denominator for positive numbers of which the ends may be 0 or infinite.
 double quotient_low(double numerator, double denominator) {
   if (numerator <= 0 || denominator == kInfinity) return 0;

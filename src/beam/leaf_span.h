@@ -61,6 +61,11 @@ struct SignKey {
   friend bool operator==(const SignKey&, const SignKey&) = default;
 };
 
+// Of one surface.
+inline SignKey key_of(SignKey::Of of, const BeamSurface& s) {
+  return {of, s.solid, s.index, 0, 0};
+}
+
 struct Assumption {
   SignKey key;
   bool positive = false;

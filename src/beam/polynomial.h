@@ -6,6 +6,8 @@
 // Legend     c + x·x + y·y + xx·x² + xy·xy + yy·y²
 #pragma once
 
+#include <array>
+
 #include "base/interval.h"
 
 namespace arris {
@@ -20,6 +22,12 @@ struct Rect {
   [[nodiscard]] double middle_x() const { return x0 + (x1 - x0) / 2; }
   [[nodiscard]] double middle_y() const { return y0 + (y1 - y0) / 2; }
 };
+
+inline std::array<Rect, 4> quarters_of(const Rect& r) {
+  const double x = r.middle_x(), y = r.middle_y();
+  return {Rect{r.x0, r.y0, x, y}, Rect{x, r.y0, r.x1, y}, Rect{r.x0, y, x, r.y1},
+          Rect{x, y, r.x1, r.y1}};
+}
 
 struct Linear {
   Interval c, x, y;

@@ -13,10 +13,6 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 using Of = SignKey::Of;
 using Root = BeamSurface::Root;
 
-SignKey key_of(Of of, const BeamSurface& s) {
-  return {of, s.solid, s.index, 0, 0};
-}
-
 // A plane behind the ray, or that it runs along, is never met; its depth is then said to be infinite.
 Met plane_met(const BeamView& view, const SpanEnd& end, SignOracle& oracle) {
   const PlaneForm& form = view.plane(end.surface.solid, end.surface.index);

@@ -142,11 +142,7 @@ class Integrator {
       accept(rect);
       return;
     }
-    const double x = rect.middle_x(), y = rect.middle_y();
-    for (const Rect& part : {Rect{rect.x0, rect.y0, x, y}, Rect{x, rect.y0, rect.x1, y},
-                             Rect{rect.x0, y, x, rect.y1}, Rect{x, y, rect.x1, rect.y1}}) {
-      visit(part, descend(node, part));
-    }
+    for (const Rect& part : quarters_of(rect)) visit(part, descend(node, part));
   }
 
   void split(const Rect& rect, std::uint32_t node, const Polygon& certain,

@@ -9,7 +9,6 @@
 #include "base/parallel_for.h"
 #include "beam/beam_tracer.h"
 #include "beam/corner_tracer.h"
-#include "csg/csg_cells.h"
 #include "image/picture_sum.h"
 #include "render/beam_shading.h"
 #include "render/camera.h"
