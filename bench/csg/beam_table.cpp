@@ -1,7 +1,6 @@
 #include "beam_table.h"
 
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <cstdio>
 #include <ctime>
@@ -16,6 +15,7 @@
 #include "arris/io.h"
 #include "arris/render.h"
 #include "interleaved.h"
+#include "io/child_process.h"
 #include "pov_scene.h"
 #include "povray.h"
 #include "small_objects.h"
@@ -58,28 +58,6 @@ struct Row {
   int rounds = 1;
   Shot first;
   std::vector<double> seconds, cpu_seconds;
-};
-
-// Where POV-Ray's files are; removed with what is in it unless it is to be kept.
-class WorkFolder {
- public:
-  explicit WorkFolder(const std::string& keep)
-      : path_(keep.empty() ? fs::temp_directory_path() / fmt::format("bench_csg-{}", ::getpid())
-                           : fs::absolute(keep)),
-        removed_(keep.empty()) {
-    fs::create_directories(path_);
-  }
-  WorkFolder(const WorkFolder&) = delete;
-  WorkFolder& operator=(const WorkFolder&) = delete;
-  ~WorkFolder() {
-    std::error_code ignored;
-    if (removed_) fs::remove_all(path_, ignored);
-  }
-  [[nodiscard]] const fs::path& path() const { return path_; }
-
- private:
-  fs::path path_;
-  bool removed_;
 };
 
 Shot shoot(const Renderer& renderer, const PreparedScene& scene, const RenderOptions& options) {
@@ -199,13 +177,15 @@ void run_beam_table(const BeamTableSettings& settings) {
     povray = find_povray();
     if (!povray) fmt::print("no povray on the PATH: no rows of POV-Ray\n");
   }
-  const WorkFolder folder(settings.keep);
+  const ScratchFolder scratch("bench-csg");
+  const fs::path folder = settings.keep.empty() ? scratch.path() : fs::absolute(settings.keep);
+  fs::create_directories(folder);
   fmt::print("{:<8} {:<15} {:>7} {:>8} {:>11} {:>8} {:>8} {:>17}\n", "", "", "", "", "", "", "",
              "beam's time/its");
   fmt::print("{:<8} {:<15} {:>7} {:>8} {:>11} {:>8} {:>8} {:>8} {:>8}\n", "scene", "renderer",
              "missed", "RMSE", "rays", "seconds", "cpu s", "seconds", "cpu s");
   for (const std::string& scene : settings.scenes) {
-    run_scene(settings, scene, povray, folder.path());
+    run_scene(settings, scene, povray, folder);
   }
 }
 
