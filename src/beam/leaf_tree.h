@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "csg/csg_expression.h"
+#include "csg/place_tree.h"
 
 namespace arris {
 
@@ -23,20 +24,11 @@ class LeafTree {
   [[nodiscard]] CsgExpression near(const std::function<bool(const Box3d&)>& meets) const;
 
  private:
-  struct Node {
-    Box3d box;
-    std::uint32_t first = 0,
-                  count = 0;  // of order_; count 0: an inner node, whose first child follows
-    std::uint32_t second_child = 0;
-  };
-  void build(std::uint32_t first, std::uint32_t count);
-
   CsgExpression whole_;  // if it is no union of many
   std::vector<CsgExpression> operands_;
   std::vector<Box3d> boxes_;            // of operands
-  std::vector<std::uint32_t> order_;    // operands with finite boxes, by place
+  PlaceTree tree_;                      // of operands with finite boxes
   std::vector<std::uint32_t> endless_;  // the others
-  std::vector<Node> nodes_;
 };
 
 }  // namespace arris

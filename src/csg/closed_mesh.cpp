@@ -12,7 +12,6 @@ namespace arris {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr std::uint32_t kLeafTriangles = 4;
 
 Vec3d center_of(const Box3d& box) {
   return box.low * 0.5 + box.high * 0.5;
@@ -81,10 +80,9 @@ ClosedMesh::ClosedMesh(std::vector<Vec3d> vertices, const std::vector<Triangle>&
   }
   if (triangles_.empty()) return;
   slack_ = 1e-12 * std::max(max_component(all.high), max_component(-all.low));
-  order_.resize(triangles_.size());
-  std::iota(order_.begin(), order_.end(), 0U);
-  nodes_.reserve(triangles_.size());
-  build(0, std::uint32_t(triangles_.size()), boxes);
+  std::vector<std::uint32_t> order(triangles_.size());
+  std::iota(order.begin(), order.end(), 0U);
+  tree_ = PlaceTree(std::move(order), boxes, slack_);
   make_digest();
 }
 
@@ -108,70 +106,32 @@ void ClosedMesh::make_digest() {
   digest_ = (std::uint64_t{high} << 32U) | low;
 }
 
-// Halves by the middle of the centers' longest side: depth is that of a balanced tree.
-void ClosedMesh::build(std::uint32_t first, std::uint32_t count, std::vector<Box3d>& boxes) {
-  const std::size_t index = nodes_.size();
-  Box3d box = boxes[order_[first]];
-  Box3d centers{Vec3d(kInfinity), Vec3d(-kInfinity)};
-  for (std::uint32_t i = first; i < first + count; ++i) {
-    box = hull(box, boxes[order_[i]]);
-    const Vec3d c = center_of(boxes[order_[i]]);
-    centers = hull(centers, {c, c});
-  }
-  nodes_.push_back({{box.low - Vec3d(slack_), box.high + Vec3d(slack_)}, first, count, 0});
-  if (count <= kLeafTriangles) return;
-  const Vec3d extent = centers.high - centers.low;
-  const int axis =
-      extent.x > extent.y ? (extent.x > extent.z ? 0 : 2) : (extent.y > extent.z ? 1 : 2);
-  const std::uint32_t half = count / 2;
-  const auto begin = order_.begin() + first;
-  std::nth_element(begin, begin + half, begin + count, [&](std::uint32_t a, std::uint32_t b) {
-    const double x = center_of(boxes[a])[axis], y = center_of(boxes[b])[axis];
-    return x != y ? x < y : a < b;
-  });
-  nodes_[index].count = 0;
-  build(first, half, boxes);
-  nodes_[index].second_child = std::uint32_t(nodes_.size());
-  build(first + half, count - half, boxes);
-}
-
 Vec3d ClosedMesh::normal_of(std::uint32_t triangle) const {
   const Triangle& t = triangles_[triangle];
   return cross(vertices_[t[1]] - vertices_[t[0]], vertices_[t[2]] - vertices_[t[0]]);
 }
 
 void ClosedMesh::collect_crossings(const Ray& ray, std::vector<Crossing>& out) const {
-  if (nodes_.empty()) return;
+  if (tree_.is_empty()) return;
   // From the point nearest to the mesh, where the numbers are small.
-  const double skipped =
-      dot(center_of(nodes_[0].box) - ray.origin, ray.direction) / dot(ray.direction, ray.direction);
+  const double skipped = dot(center_of(tree_.bounds()) - ray.origin, ray.direction) /
+                         dot(ray.direction, ray.direction);
   const Vec3d origin = ray.origin + ray.direction * skipped;
   const Shear shear(origin, ray.direction);
   const Vec3d inverse = Vec3d(1) / ray.direction;
-  std::uint32_t stack[64];
-  int top = 0;
-  stack[top++] = 0;
-  while (top > 0) {
-    const std::uint32_t at = stack[--top];
-    const Node& node = nodes_[at];
-    if (!line_meets(node.box, origin, inverse)) continue;
-    if (node.count == 0) {
-      stack[top++] = node.second_child;
-      stack[top++] = at + 1;
-      continue;
-    }
-    for (std::uint32_t i = node.first; i < node.first + node.count; ++i) {
-      const Triangle& t = triangles_[order_[i]];
-      const Vec3d a = shear.apply(vertices_[t[0]]), b = shear.apply(vertices_[t[1]]),
-                  c = shear.apply(vertices_[t[2]]);
-      const double u = edge_side(b, c, t[1], t[2]), v = edge_side(c, a, t[2], t[0]),
-                   w = edge_side(a, b, t[0], t[1]);
-      if ((u > 0) != (v > 0) || (v > 0) != (w > 0)) continue;
-      const double t_hit = (u * a.z + v * b.z + w * c.z) / (u + v + w);
-      // Seen along the line, a face that turns counter-clockwise looks away: the line leaves there.
-      out.push_back({skipped + t_hit, order_[i], u > 0 ? -1 : 1});
-    }
-  }
+  const auto cross_triangle = [&](std::uint32_t i) {
+    const Triangle& t = triangles_[i];
+    const Vec3d a = shear.apply(vertices_[t[0]]), b = shear.apply(vertices_[t[1]]),
+                c = shear.apply(vertices_[t[2]]);
+    const double u = edge_side(b, c, t[1], t[2]), v = edge_side(c, a, t[2], t[0]),
+                 w = edge_side(a, b, t[0], t[1]);
+    if ((u > 0) != (v > 0) || (v > 0) != (w > 0)) return true;
+    const double t_hit = (u * a.z + v * b.z + w * c.z) / (u + v + w);
+    // Seen along the line, a face that turns counter-clockwise looks away: the line leaves there.
+    out.push_back({skipped + t_hit, i, u > 0 ? -1 : 1});
+    return true;
+  };
+  tree_.visit([&](const Box3d& box) { return line_meets(box, origin, inverse); }, cross_triangle);
 }
 
 bool ClosedMesh::contains(Vec3d p) const {
@@ -195,30 +155,20 @@ Cover ClosedMesh::cover(const SpaceCell& cell) const {
     return b.low.x > x.hi || b.high.x < x.lo || b.low.y > y.hi || b.high.y < y.lo ||
            b.low.z > z.hi || b.high.z < z.lo;
   };
-  std::vector<std::uint32_t> stack;
-  if (!nodes_.empty()) stack.push_back(0);
-  while (!stack.empty()) {
-    const std::uint32_t at = stack.back();
-    stack.pop_back();
-    const Node& node = nodes_[at];
-    if (apart(node.box)) continue;
-    if (node.count == 0) {
-      stack.push_back(node.second_child);
-      stack.push_back(at + 1);
-      continue;
-    }
-    for (std::uint32_t i = node.first; i < node.first + node.count; ++i) {
-      const Triangle& t = triangles_[order_[i]];
-      const Vec3d a = vertices_[t[0]], b = vertices_[t[1]], c = vertices_[t[2]];
-      if (apart({min(a, min(b, c)), max(a, max(b, c))})) continue;
-      const Vec3d n = normal_of(order_[i]);
-      const Interval height = linear_range(cell, n) - dot(to_intervals(n), to_intervals(a));
-      // The rounding of n itself moves the plane; triangles without area are seen by their box alone.
-      const double slack = slack_ * std::sqrt(dot(n, n));
-      if (height.lo > slack || height.hi < -slack) continue;
-      return Cover::on;
-    }
-  }
+  bool is_on = false;
+  const auto may_be_apart = [&](std::uint32_t i) {
+    const Triangle& t = triangles_[i];
+    const Vec3d a = vertices_[t[0]], b = vertices_[t[1]], c = vertices_[t[2]];
+    if (apart({min(a, min(b, c)), max(a, max(b, c))})) return true;
+    const Vec3d n = normal_of(i);
+    const Interval height = linear_range(cell, n) - dot(to_intervals(n), to_intervals(a));
+    // The rounding of n itself moves the plane; triangles without area are seen by their box alone.
+    const double slack = slack_ * std::sqrt(dot(n, n));
+    is_on = height.lo <= slack && height.hi >= -slack;
+    return !is_on;
+  };
+  tree_.visit([&](const Box3d& box) { return !apart(box); }, may_be_apart);
+  if (is_on) return Cover::on;
   const Vec3d middle{x.lo / 2 + x.hi / 2, y.lo / 2 + y.hi / 2, z.lo / 2 + z.hi / 2};
   return contains(middle) ? Cover::in : Cover::out;
 }

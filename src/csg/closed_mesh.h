@@ -13,6 +13,7 @@
 #include "arris/csg.h"
 #include "arris/rounding.h"
 #include "csg/cover.h"
+#include "csg/place_tree.h"
 
 namespace arris {
 
@@ -39,20 +40,13 @@ class ClosedMesh {
   [[nodiscard]] Vec3d normal_of(std::uint32_t triangle) const;
 
  private:
-  struct Node {
-    Box3d box;
-    std::uint32_t first = 0, count = 0;  // of order_, if a leaf
-    std::uint32_t second_child = 0;      // the first follows its parent
-  };
   void make_digest();
-  void build(std::uint32_t first, std::uint32_t count, std::vector<Box3d>& boxes);
 
   std::vector<Vec3d> vertices_;
   std::vector<Triangle> triangles_;
-  std::vector<std::uint32_t> order_;
-  std::vector<Node> nodes_;
+  PlaceTree tree_;  // of triangles
   std::uint64_t digest_ = 0;
-  double slack_ = 0;  // the nodes' boxes are wider by this: rounding of the crossing test
+  double slack_ = 0;  // the tree's boxes are wider by this: rounding of the crossing test
 };
 
 }  // namespace arris
