@@ -173,23 +173,30 @@ double seconds_since(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
-// Those of tiles that are left out, as the render is to stop, are empty.
+struct RenderedTiles {
+  std::vector<TileCounts> counts;
+  bool complete = false;  // the render was not stopped before the last of them was done
+};
+
 template <class Tracer>
-std::vector<TileCounts> render_tiles(const Job& job, const Tracer& tracer, Layers& layers) {
+RenderedTiles render_tiles(const Job& job, const Tracer& tracer, Layers& layers) {
   const auto start = std::chrono::steady_clock::now();
   const std::vector<BeamTile> tiles = tracer.make_tiles();
-  std::vector<TileCounts> counts(tiles.size());
+  RenderedTiles rendered{std::vector<TileCounts>(tiles.size()), false};
+  const auto is_stopped = [&] { return job.options.stop != nullptr && job.options.stop->load(); };
   std::atomic<std::size_t> finished = 0;
   std::mutex reporting;
   parallel_for(tiles.size(), {.threads = job.options.threads}, [&](std::size_t i) {
-    if (job.options.stop != nullptr && job.options.stop->load()) return;
-    counts[i] = render_tile(job, tracer, tiles[i], layers);
+    if (is_stopped()) return;
+    rendered.counts[i] = render_tile(job, tracer, tiles[i], layers);
+    if (is_stopped()) return;  // perhaps within the tile
     ++finished;
     if (!job.options.on_progress) return;
     const std::scoped_lock lock(reporting);
     job.options.on_progress({double(finished) / double(tiles.size()), seconds_since(start)});
   });
-  return counts;
+  rendered.complete = finished == tiles.size();
+  return rendered;
 }
 
 class BeamRenderer final : public Renderer {
@@ -223,17 +230,16 @@ class BeamRenderer final : public Renderer {
     }
     const std::vector<LightPlace> lights = make_light_places(scene.geometry(), job.lights);
     const auto render_with = [&](const auto& tracer) { return render_tiles(job, tracer, layers); };
-    const std::vector<TileCounts> counts =
+    const RenderedTiles tiles =
         settings_.rule == BeamRule::corners
             ? render_with(CornerTracer(beams.solids(), beams.eye(), image.width_px, image.height_px,
                                        beam, lights))
             : render_with(BeamTracer(beams.solids(), beams.eye(), image.width_px, image.height_px,
                                      beam, lights));
-    const bool stopped = options.stop != nullptr && options.stop->load();
     RenderResult result;
     result.samples = options.samples;
-    if (stopped) result.samples.last = result.samples.first;
-    sum_counts(counts, result);
+    if (!tiles.complete) result.samples.last = result.samples.first;
+    sum_counts(tiles.counts, result);
     const std::uint32_t samples = result.samples.last - result.samples.first;
     result.sum = std::make_shared<const PictureSum>(sum_of_mean(layers.picture, samples));
     if (samples > 0) result.picture = std::move(layers.picture);

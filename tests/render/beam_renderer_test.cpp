@@ -1,6 +1,7 @@
 // The beam renderer against closed forms and the path tracer.
 #include <gtest/gtest.h>
 
+#include <atomic>
 #include <cmath>
 
 #include "arris/render.h"
@@ -153,6 +154,23 @@ TEST(beam_renderer, fills_its_layers_and_counts) {
   EXPECT_GT(result.beam->regions, 0U);
   EXPECT_GT(result.beam->certified_fraction, 0.99);
   EXPECT_EQ(render(scene, *renderer, 1, {}, 1).picture.color.values, result.picture.color.values);
+}
+
+TEST(beam_renderer, a_stop_counts_until_the_picture_is_done) {
+  const auto scene = prepare_scene(beam_scene());
+  for (const bool at_the_end : {false, true}) {
+    std::atomic<bool> stop = false;
+    RenderOptions options;
+    options.samples = {0, 4};
+    options.threads = 1;
+    options.stop = &stop;
+    options.on_progress = [&](const Progress& progress) {
+      if (!at_the_end || progress.done == 1) stop = true;
+    };
+    const RenderResult result = make_beam_renderer()->render(*scene, options);
+    EXPECT_EQ(result.samples.last, at_the_end ? 4U : 0U);
+    EXPECT_EQ(result.picture.color.width_px, at_the_end ? 24 : 0);
+  }
 }
 
 TEST(beam_renderer, says_what_it_cannot_take) {
