@@ -3,8 +3,15 @@
 #include <limits>
 #include <utility>
 
+#include "beam/taylor_model.h"
+
 namespace arris {
 namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+// Of an outline, in pixels: smaller regions have closer bundles.
+constexpr double kMostBlur = 1.0 / 2048;
 
 struct WorldPlane {
   Vec3d normal;  // unit
@@ -31,8 +38,7 @@ MirrorLooker::MirrorLooker(std::span<const BeamSolid> solids, const EyeRays& eye
     : solids_(solids), eye_(eye), is_mirror_(std::move(is_mirror)) {}
 
 bool MirrorLooker::is_mirror(const LookNode& node) const {
-  return is_mirror_ && node.kind == LookNode::Kind::surface && node.seen.surface.is_plane() &&
-         is_mirror_(node.seen);
+  return is_mirror_ && node.kind == LookNode::Kind::surface && is_mirror_(node.seen);
 }
 
 bool MirrorLooker::add_mirrors(LookTree& tree, const Rect& rect, MirrorLists& lists,
@@ -47,14 +53,19 @@ bool MirrorLooker::add_mirrors(LookTree& tree, const Rect& rect, MirrorLists& li
       ++i;
       continue;
     }
+    if (mirror.seen.surface.is_whole()) {
+      tree.nodes[i].mirror_open = true;
+      continue;
+    }
     const std::uint32_t number = list_for(mirror, lists);
-    const MirrorLists::List& list = lists.lists_[number - 1];
-    constexpr double kInfinity = std::numeric_limits<double>::infinity();
-    const BeamList beam = prune_parts(list.view, list.parts, rect, kInfinity);
-    const LookTree seen = look(list.view, beam, rect, kInfinity);
+    const std::optional<LookTree> seen = look_into(lists.lists_[number - 1], rect, lists.tile_);
     ++regions;
-    complete = complete && seen.complete;
-    replace_node(tree, i, seen, [&](const LookNode& end) {
+    complete = complete && seen && seen->complete;
+    if (!seen) {
+      tree.nodes[i].mirror_open = true;
+      continue;
+    }
+    replace_node(tree, i, *seen, [&](const LookNode& end) {
       // By rounding a ray may start inside what touches the mirror.
       const bool is_open = end.kind == LookNode::Kind::unknown ||
                            (end.kind == LookNode::Kind::surface && end.seen.leaf == kStartLeaf);
@@ -67,28 +78,93 @@ bool MirrorLooker::add_mirrors(LookTree& tree, const Rect& rect, MirrorLists& li
   return complete;
 }
 
+std::optional<LookTree> MirrorLooker::look_into(MirrorLists::List& list, const Rect& rect,
+                                                const Rect& tile) const {
+  if (!list.flat) return look_by_bundle(list, rect, tile);
+  const BeamList beam = prune_parts(list.flat->view, list.flat->parts, rect, kInfinity);
+  return look(list.flat->view, beam, rect, kInfinity);
+}
+
+std::optional<LookTree> MirrorLooker::look_by_bundle(MirrorLists::List& list, const Rect& rect,
+                                                     const Rect& tile) const {
+  const std::optional<RayBundle> bundle = bundle_of(list.chain, rect);
+  if (!bundle) return std::nullopt;
+  const auto holds = [&](const MirrorLists::Level& level) {
+    const Rect& r = level.rect;
+    return r.x0 <= rect.x0 && r.y0 <= rect.y0 && r.x1 >= rect.x1 && r.y1 >= rect.y1;
+  };
+  while (!list.levels.empty() && !holds(list.levels.back())) list.levels.pop_back();
+  if (list.levels.empty()) {
+    const std::optional<RayBundle> whole = bundle_of(list.chain, tile);
+    list.levels.push_back(whole ? MirrorLists::Level{tile, parts_near(*whole)}
+                                : MirrorLists::Level{rect, parts_near(*bundle)});
+  }
+  const BeamView view(solids_, *bundle);
+  BeamList beam = prune_parts(view, list.levels.back().parts, kUnitSquare, kInfinity);
+  LookTree seen = look(view, beam, kUnitSquare, kInfinity);
+  const Rect& last = list.levels.back().rect;
+  if (last.width() > rect.width()) list.levels.push_back({rect, std::move(beam.parts)});
+  for (LookNode& node : seen.nodes) {
+    if (node.kind != LookNode::Kind::sign) continue;
+    seen.complete = seen.complete && blur_of(node.polynomial, rect) <= kMostBlur;
+    node.polynomial = on_picture(node.polynomial, rect);
+  }
+  return seen;
+}
+
+std::optional<RayBundle> MirrorLooker::bundle_of(const MirrorChain& chain, const Rect& rect) const {
+  std::optional<RayBundle> bundle = make_bundle(eye_, rect);
+  for (const SeenSurface& mirror : chain) {
+    bundle = reflect(*bundle, solids_, mirror.surface);
+    if (!bundle) break;
+  }
+  return bundle;
+}
+
+std::vector<BeamPart> MirrorLooker::parts_near(const RayBundle& bundle) const {
+  std::vector<BeamPart> parts;
+  for (std::uint32_t i = 0; i < solids_.size(); ++i) {
+    const RayBundle own = map_bundle(solids_[i].object_from_world, bundle);
+    const Vec3i origin = ranges_of(own.origin), direction = ranges_of(own.direction);
+    CsgExpression root = solids_[i].shape->root_near([&](const Box3d& box) {
+      return depths_in(box, origin, direction, kInfinity).has_value();
+    });
+    if (!root.is_decided()) parts.push_back({i, std::move(root)});
+  }
+  return parts;
+}
+
 std::uint32_t MirrorLooker::list_for(const LookNode& mirror, MirrorLists& lists) const {
   const SeenSurface& seen = mirror.seen;
-  const MirrorLists::Key key{mirror.mirrors, seen.solid, seen.leaf, seen.face};
+  const MirrorLists::Key key{mirror.mirrors, seen.solid, seen.leaf, seen.face, seen.surface.root};
   const auto known = lists.known_.find(key);
   if (known != lists.known_.end()) return known->second;
-  const EyeRays eye = mirror.mirrors == 0 ? eye_ : lists.eye(mirror.mirrors);
-  MirrorChain chain;
-  if (mirror.mirrors != 0) chain = lists.chain(mirror.mirrors);
-  chain.push_back(seen);
-  const BeamSolid& solid = solids_[seen.solid];
+  MirrorLists::List list;
+  const MirrorLists::List* before =
+      mirror.mirrors != 0 ? &lists.lists_[mirror.mirrors - 1] : nullptr;
+  if (before != nullptr) list.chain = before->chain;
+  list.chain.push_back(seen);
+  // From within a solid the rays begin inside of it, which the flat mirror's view has not.
+  if (seen.surface.is_plane() && seen.entering && (before == nullptr || before->flat)) {
+    list.flat = make_flat(before == nullptr ? eye_ : before->flat->eye, seen, lists.tile_);
+  }
+  lists.lists_.push_back(std::move(list));
+  return lists.known_[key] = std::uint32_t(lists.lists_.size());
+}
+
+MirrorLists::FlatView MirrorLooker::make_flat(const EyeRays& eye, const SeenSurface& mirror,
+                                              const Rect& tile) const {
+  const BeamSolid& solid = solids_[mirror.solid];
   const EyeRays mirrored =
-      mirror_eye(eye, to_world(solid, solid.shape->planes()[seen.surface.index]));
-  BeamView view(solids_, mirrored, LitPlane{seen.solid, seen.surface.index});
+      mirror_eye(eye, to_world(solid, solid.shape->planes()[mirror.surface.index]));
+  BeamView view(solids_, mirrored, LitPlane{mirror.solid, mirror.surface.index});
   std::vector<BeamPart> roots;
   for (std::uint32_t i = 0; i < solids_.size(); ++i) {
     const CsgExpression& root = solids_[i].shape->root();
     if (!root.is_decided()) roots.push_back({i, root.intersected_with(kStartLeaf)});
   }
-  std::vector<BeamPart> parts =
-      prune_parts(view, roots, lists.tile_, std::numeric_limits<double>::infinity()).parts;
-  lists.lists_.push_back({std::move(chain), mirrored, std::move(view), std::move(parts)});
-  return lists.known_[key] = std::uint32_t(lists.lists_.size());
+  std::vector<BeamPart> parts = prune_parts(view, roots, tile, kInfinity).parts;
+  return {mirrored, std::move(view), std::move(parts)};
 }
 
 }  // namespace arris

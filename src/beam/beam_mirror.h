@@ -1,11 +1,14 @@
-// beam_mirror.h — what a beam sees in flat mirrors
+// beam_mirror.h — what a beam sees in mirrors
 // What       A flat mirror shows the scene as an eye behind it would see it, at the eye's mirrored place: the rays have
 //            one apex again, so that the same look tells what is seen in it, and the signs it depends on go on below
-//            the mirror's node. Mirrors in mirrors follow level by level.
-// Guarantee  as that of the look, for surfaces, not for their light. The mirrored eye is rounded
+//            the mirror's node. What a curved mirror shows is looked at by a bundle of rays (ray_bundle.h), and so is
+//            what is seen in turn in any mirror after it: level by level, in a tree of beams, of which each hands what
+//            it may meet to its parts.
+// Guarantee  as that of the look, for surfaces, not for their light. A flat mirror's eye is rounded
 //            (tests/beam/beam_mirror_test.cpp)
-// Limits     at most kMostMirrors in one another. Curved mirrors have no single apex: they are for rays.
-// Cost       one look for each mirror in a region; views and lists are made once for each tile
+// Limits     at most kMostMirrors in one another. Leaves that are seen as a whole stay open.
+// Cost       flat: one look for each mirror in a region; views and lists are made once for each tile. Curved: regions of
+//            a pixel and less, where bundles are close enough
 // Source     J.-M. Hasenfratz and D. Ghazanfarpour, "Rendering CSG scenes with general antialiasing", 1996, §3, whose
 //            volumes bound what any surface reflects; P. Heckbert and P. Hanrahan, "Beam Tracing Polygonal Objects",
 //            1984: flat mirrors are exact
@@ -14,10 +17,12 @@
 #include <cstdint>
 #include <functional>
 #include <map>
+#include <optional>
 #include <span>
 #include <tuple>
 #include <vector>
 
+#include "beam/ray_bundle.h"
 #include "beam/region_look.h"
 
 namespace arris {
@@ -35,23 +40,31 @@ class MirrorLists {
   [[nodiscard]] const MirrorChain& chain(std::uint32_t mirrors) const {
     return lists_[mirrors - 1].chain;
   }
-  [[nodiscard]] const BeamView& view(std::uint32_t mirrors) const {
-    return lists_[mirrors - 1].view;
-  }
-  [[nodiscard]] const EyeRays& eye(std::uint32_t mirrors) const { return lists_[mirrors - 1].eye; }
 
  private:
   friend class MirrorLooker;
-  struct List {
-    MirrorChain chain;
+  // Of flat mirrors only: the last one's eye, and what it may see of the tile.
+  struct FlatView {
     EyeRays eye;
     BeamView view;
     std::vector<BeamPart> parts;
   };
-  using Key = std::tuple<std::uint32_t, std::uint32_t, std::uint32_t, std::uint32_t>;
+  // What the rays of a part of the picture may meet.
+  struct Level {
+    Rect rect;
+    std::vector<BeamPart> parts;
+  };
+  struct List {
+    MirrorChain chain;
+    std::optional<FlatView> flat;
+    std::vector<Level> levels;  // each within the one before; of bundles
+  };
+  using Key =
+      std::tuple<std::uint32_t, std::uint32_t, std::uint32_t, std::uint32_t, BeamSurface::Root>;
   Rect tile_;
   std::vector<List> lists_;
-  std::map<Key, std::uint32_t> known_;  // mirrors so far, solid, leaf, face: the list's number + 1
+  // Mirrors so far, solid, leaf, face, root: the list's number + 1.
+  std::map<Key, std::uint32_t> known_;
 };
 
 // Is all that this surface does to be a mirror?
@@ -63,13 +76,23 @@ class MirrorLooker {
   MirrorLooker(std::span<const BeamSolid> solids, const EyeRays& eye, IsMirror is_mirror);
 
   [[nodiscard]] bool is_mirror(const LookNode& node) const;
-  // Replaces flat mirrors by what is seen in them. False: a smaller rectangle may tell more; mirrors that could not be
-  // looked into stay. Regions looked at are added to `regions`.
+  // Replaces mirrors by what is seen in them. False: a smaller rectangle may tell more; mirrors that could not be looked
+  // into stay. Regions looked at are added to `regions`.
   bool add_mirrors(LookTree& tree, const Rect& rect, MirrorLists& lists,
                    std::uint64_t& regions) const;
 
  private:
   [[nodiscard]] std::uint32_t list_for(const LookNode& mirror, MirrorLists& lists) const;
+  [[nodiscard]] MirrorLists::FlatView make_flat(const EyeRays& eye, const SeenSurface& mirror,
+                                                const Rect& tile) const;
+  // Nothing: no bundle holds the rays.
+  [[nodiscard]] std::optional<LookTree> look_into(MirrorLists::List& list, const Rect& rect,
+                                                  const Rect& tile) const;
+  [[nodiscard]] std::optional<LookTree> look_by_bundle(MirrorLists::List& list, const Rect& rect,
+                                                       const Rect& tile) const;
+  [[nodiscard]] std::optional<RayBundle> bundle_of(const MirrorChain& chain, const Rect& rect) const;
+  // What of all solids the bundle's rays may meet.
+  [[nodiscard]] std::vector<BeamPart> parts_near(const RayBundle& bundle) const;
 
   std::span<const BeamSolid> solids_;
   EyeRays eye_;

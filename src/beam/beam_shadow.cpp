@@ -160,29 +160,12 @@ struct Shaft {
   bool is_directional = false;
   Vec3d light;  // position, or the way to it
 
-  // May the box meet light + s (target - light) for an s in [0, 1], or target + s light for an s > 0? Each axis leaves
-  // an interval of s.
+  // May the box meet light + s (target - light) for an s in [0, 1], or target + s light for an s > 0?
   [[nodiscard]] bool meets(const Box3d& box) const {
-    double low = 0, high = is_directional ? kInfinity : 1;
-    for (int k = 0; k < 3; ++k) {
-      const double from = is_directional ? target.low[k] : light[k];
-      const double to = is_directional ? target.high[k] : light[k];
-      const double slope_low = is_directional ? light[k] : target.low[k] - light[k];
-      const double slope_high = is_directional ? light[k] : target.high[k] - light[k];
-      cut(from - box.high[k], slope_low, low, high);
-      cut(box.low[k] - to, -slope_high, low, high);
-    }
-    return low <= high;
-  }
-
- private:
-  // To where value + s slope ≤ 0, with some slack for rounding.
-  static void cut(double value, double slope, double& low, double& high) {
-    constexpr double kSlack = 1e-9;
-    const double limit = -value / slope;
-    if (slope > 0) high = std::min(high, limit + kSlack * std::abs(limit) + kSlack);
-    if (slope < 0) low = std::max(low, limit - kSlack * std::abs(limit) - kSlack);
-    if (slope == 0 && value > 0) low = kInfinity;
+    const auto axis = [&](int k) { return Interval(target.low[k], target.high[k]); };
+    const Vec3i to{axis(0), axis(1), axis(2)}, at = to_intervals(light);
+    return (is_directional ? depths_in(box, to, at, kInfinity) : depths_in(box, at, to - at, 1))
+        .has_value();
   }
 };
 

@@ -120,4 +120,23 @@ struct BeamSolid {
   Affine3d object_from_world;
 };
 
+// A plane or quadric of one solid's table.
+struct BeamSurface {
+  // What a ray does at a quadric: enters from outside at the nearer root, leaves it again at the farther one; leaves
+  // it having started inside; enters a cone's half having started in the other half.
+  // whole: the surface of a leaf that is not convex, and `index` is the leaf.
+  enum class Root : std::uint8_t { none, nearer, farther, leaving, other_half, whole };
+  std::uint32_t solid = 0, index = 0;
+  Root root = Root::none;  // none: a plane
+
+  friend bool operator==(const BeamSurface&, const BeamSurface&) = default;
+  [[nodiscard]] bool is_plane() const { return root == Root::none; }
+  [[nodiscard]] bool is_whole() const { return root == Root::whole; }
+  // The same plane, or the same quadric.
+  [[nodiscard]] bool lies_on(const BeamSurface& other) const {
+    return solid == other.solid && index == other.index && is_plane() == other.is_plane() &&
+           is_whole() == other.is_whole();
+  }
+};
+
 }  // namespace arris

@@ -169,10 +169,17 @@ class BeamTracer::Tracer {
         surface.lit_shares.resize(shared_.shadows_.light_count());
         for (LitShare& share : surface.lit_shares) share.open = end.estimate;
       }
-      const bool is_curved = node.kind == LookNode::Kind::surface && !node.seen.surface.is_plane();
-      if (is_curved && end.lo < 1) surface.samples = end.samples;
+      if (varies(node) && end.lo < 1) surface.samples = end.samples;
       add(surface);
     }
+  }
+
+  // Is it curved, or seen in a curved mirror?
+  [[nodiscard]] bool varies(const LookNode& node) const {
+    const auto is_curved = [](const SeenSurface& seen) { return !seen.surface.is_plane(); };
+    return (node.kind == LookNode::Kind::surface && is_curved(node.seen)) ||
+           (node.mirrors != 0 &&
+            std::ranges::any_of(mirror_lists_.chain(node.mirrors), is_curved));
   }
 
   // How much of each surface each light reaches, where that is asked for one by one.

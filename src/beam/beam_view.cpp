@@ -33,7 +33,7 @@ Linear scaled(const Linear& a, const Linear& only_constant) {
 void add_tangents(QuadricForm& form, const LinearVec& o, const LinearVec& d,
                   const ViewFrame& frame) {
   Linear middle, side;
-  if (frame.direction_fixed) {
+  if (frame.kind == BeamKind::parallel) {
     middle = frame.weight * square_root(square(d.x.c) + square(d.y.c));
     side = scaled(o.x, d.y) - scaled(o.y, d.x);
   } else {
@@ -60,7 +60,7 @@ QuadricForm make_form(const ViewFrame& frame, const CsgQuadric& quadric) {
   const Vec3d w = weights_of(quadric.form);
   const LinearVec o = add_scaled(map_linear(m.linear, frame.origin), frame.weight, m.translation);
   const LinearVec d = map_linear(m.linear, frame.direction);
-  const bool fixed = frame.direction_fixed;
+  const bool fixed = frame.kind == BeamKind::parallel;
   const auto times = [fixed](const Linear& of_o, const Linear& of_d) {
     return fixed ? scaled(of_o, of_d) : scaled(of_d, of_o);
   };
@@ -86,7 +86,7 @@ Linear make_side(const ViewFrame& frame, const BeamShape::Edge& edge) {
   const auto dot_linear = [](const LinearVec& v, const Vec3i& n) {
     return v.x * n.x + v.y * n.y + v.z * n.z;
   };
-  if (frame.direction_fixed) {
+  if (frame.kind == BeamKind::parallel) {
     const Vec3i d{frame.direction.x.c, frame.direction.y.c, frame.direction.z.c};
     return frame.weight * dot(d, cross(a, b)) + dot_linear(frame.origin, cross(a - b, d));
   }
@@ -107,14 +107,14 @@ ViewFrame make_eye_frame(const EyeRays& eye, const BeamSolid& solid) {
 }
 
 // a: -ha / sa, b: -hb / sb; their difference times sa sb.
-Quadratic plane_before_plane(const PlaneForm& a, const PlaneForm& b, bool direction_fixed) {
-  if (direction_fixed) return Quadratic(scaled(b.height, a.slope) - scaled(a.height, b.slope));
+Quadratic plane_before_plane(const PlaneForm& a, const PlaneForm& b, BeamKind kind) {
+  if (kind == BeamKind::parallel) return Quadratic(scaled(b.height, a.slope) - scaled(a.height, b.slope));
   return Quadratic(scaled(a.slope, b.height) - scaled(b.slope, a.height));
 }
 
 // value + 2 t half_slope + t² curvature at t = -h / s, times s².
-Quadratic quadric_at_plane(const QuadricForm& q, const PlaneForm& p, bool direction_fixed) {
-  if (direction_fixed) {
+Quadratic quadric_at_plane(const QuadricForm& q, const PlaneForm& p, BeamKind kind) {
+  if (kind == BeamKind::parallel) {
     const Interval s = p.slope.c;
     return q.value * square(s) - (p.height * q.half_slope) * (Interval(2) * s) +
            squared(p.height) * q.curvature.c;
@@ -125,8 +125,8 @@ Quadratic quadric_at_plane(const QuadricForm& q, const PlaneForm& p, bool direct
 }
 
 // -h / s + half_slope / curvature, times s · curvature.
-Quadratic plane_beyond_middle(const QuadricForm& q, const PlaneForm& p, bool direction_fixed) {
-  if (direction_fixed) {
+Quadratic plane_beyond_middle(const QuadricForm& q, const PlaneForm& p, BeamKind kind) {
+  if (kind == BeamKind::parallel) {
     return Quadratic(q.half_slope * p.slope.c - p.height * q.curvature.c);
   }
   return p.slope * q.half_slope - q.curvature * p.height.c;
@@ -166,7 +166,7 @@ ViewFrame make_light_frame(const EyeRays& eye, const BeamSolid& solid, const Lit
     frame.origin = {point.x + lit.weight * (d.x * back), point.y + lit.weight * (d.y * back),
                     point.z + lit.weight * (d.z * back)};
     frame.weight = lit.weight;
-    frame.direction_fixed = true;
+    frame.kind = BeamKind::parallel;
     return frame;
   }
   const Vec3i at = map_vector(m.linear, to_intervals(light.position)) + to_intervals(m.translation);
@@ -229,6 +229,7 @@ LeafWindow BeamView::make_window(std::uint32_t solid, std::uint32_t leaf) const 
   if (leaf == kStartLeaf) return everywhere;
   const Box3d& box = shape(solid).leaf_box(leaf);
   if (!is_finite(box.low) || !is_finite(box.high)) return everywhere;
+  if (bundle_) return make_bundle_window(solid, box);
   const Projection& map = projections_[solid];
   LeafWindow window{kInfinity, kInfinity, -kInfinity, -kInfinity, kInfinity, 0};
   for (int i = 0; i < 8; ++i) {
@@ -254,9 +255,21 @@ LeafWindow BeamView::make_window(std::uint32_t solid, std::uint32_t leaf) const 
   return window;
 }
 
-bool BeamView::starts_in_volume(std::uint32_t solid, std::uint32_t leaf) const {
-  return apex_ && shape(solid).volume(leaf)->contains(
-                      transform_point(solids_[solid].object_from_world, *apex_));
+LeafWindow BeamView::make_bundle_window(std::uint32_t solid, const Box3d& box) const {
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  const RayBundle& own = bundle_in(solid);
+  const std::optional<Interval> depths =
+      depths_in(box, ranges_of(own.origin), ranges_of(own.direction), kInfinity);
+  if (!depths) return {kInfinity, kInfinity, -kInfinity, -kInfinity};
+  return {-kInfinity, -kInfinity, kInfinity, kInfinity, depths->lo, depths->hi};
+}
+
+Cover BeamView::start_in_volume(std::uint32_t solid, std::uint32_t leaf) const {
+  const ClosedMesh& volume = *shape(solid).volume(leaf);
+  if (bundle_) return volume.cover(bundle_cell(solid, {0, 0}));
+  const bool inside =
+      apex_ && volume.contains(transform_point(solids_[solid].object_from_world, *apex_));
+  return inside ? Cover::in : Cover::out;
 }
 
 // Of the corners' triple product as the origin sees them, which has the sign that all sides have where a ray meets it.
@@ -270,7 +283,7 @@ int BeamView::make_facet_turn(std::uint32_t solid, std::uint32_t leaf) const {
   const Vec3i a = corner(0), b = corner(1), c = corner(2);
   const ViewFrame& frame = frames_[solid];
   Interval turn;
-  if (frame.direction_fixed) {
+  if (frame.kind == BeamKind::parallel) {
     const LinearVec& d = frame.direction;
     turn = dot(Vec3i{d.x.c, d.y.c, d.z.c}, cross(b - a, c - a));
   } else {
@@ -280,7 +293,26 @@ int BeamView::make_facet_turn(std::uint32_t solid, std::uint32_t leaf) const {
   return turn.lo > 0 ? 1 : turn.hi < 0 ? -1 : 0;
 }
 
+// What is not linear, and what depth changes in it, goes into the centre.
+SpaceCell BeamView::bundle_cell(std::uint32_t solid, Interval depths) const {
+  const RayBundle& own = bundle_in(solid);
+  const Interval z = (Interval(depths.lo) + Interval(depths.hi)) * Interval(0.5);
+  const Interval reach = (Interval(depths.hi) - Interval(depths.lo)) * Interval(0.5);
+  SpaceCell cell;
+  for (int k = 0; k < 3; ++k) {
+    const Quadratic &o = own.origin[k], &d = own.direction[k];
+    const Quadratic rest{0, 0, 0, o.xx + d.xx * depths, o.xy + d.xy * depths,
+                         o.yy + d.yy * depths};
+    cell.center[k] = o.c + d.c * z + range_over(rest, kUnitSquare);
+    cell.half[0][k] = o.x + d.x * depths;
+    cell.half[1][k] = o.y + d.y * depths;
+    cell.half[2][k] = d.c * reach;
+  }
+  return cell;
+}
+
 SpaceCell BeamView::cell(std::uint32_t solid, const Rect& rect, Interval depths) const {
+  if (bundle_) return bundle_cell(solid, depths);
   const ViewFrame& frame = frames_[solid];
   const Interval x = Interval(rect.x0) * Interval(0.5) + Interval(rect.x1) * Interval(0.5);
   const Interval y = Interval(rect.y0) * Interval(0.5) + Interval(rect.y1) * Interval(0.5);
@@ -298,6 +330,34 @@ SpaceCell BeamView::cell(std::uint32_t solid, const Rect& rect, Interval depths)
           {scaled({d.x.x, d.y.x, d.z.x}, far * half(rect.x0, rect.x1)),
            scaled({d.x.y, d.y.y, d.z.y}, far * half(rect.y0, rect.y1)),
            scaled(middle, half(depths.lo, depths.hi))}};
+}
+
+const RayBundle& BeamView::bundle_in(std::uint32_t solid) const {
+  const auto known = asked_bundles_.find(solid);
+  if (known != asked_bundles_.end()) return known->second;
+  return asked_bundles_.emplace(solid, map_bundle(solids_[solid].object_from_world, *bundle_))
+      .first->second;
+}
+
+const BundlePlane& BeamView::bundle_plane(std::uint32_t solid, std::uint32_t index) const {
+  const std::uint64_t key = std::uint64_t(solid) << 32U | index;
+  const auto known = asked_bundle_planes_.find(key);
+  if (known != asked_bundle_planes_.end()) return known->second;
+  BundlePlane form = make_form(bundle_in(solid), shape(solid).planes()[index]);
+  if (starts_on({solid, index, BeamSurface::Root::none})) form.height = {};
+  return asked_bundle_planes_.emplace(key, form).first->second;
+}
+
+const BundleQuadric& BeamView::bundle_quadric(std::uint32_t solid, std::uint32_t index) const {
+  const std::uint64_t key = std::uint64_t(solid) << 32U | index;
+  const auto known = asked_bundle_quadrics_.find(key);
+  if (known != asked_bundle_quadrics_.end()) return known->second;
+  BundleQuadric form = make_form(bundle_in(solid), shape(solid).quadrics()[index]);
+  if (starts_on({solid, index, BeamSurface::Root::nearer})) {
+    form.value = {};
+    form.discriminant = squared(form.half_slope);
+  }
+  return asked_bundle_quadrics_.emplace(key, form).first->second;
 }
 
 const PlaneForm& BeamView::remembered_plane(std::uint32_t solid, std::uint32_t index) const {
@@ -363,6 +423,9 @@ BeamView::BeamView(std::span<const BeamSolid> solids, const EyeRays& eye)
   }
   turns_ = std::move(turns);
 }
+
+BeamView::BeamView(std::span<const BeamSolid> solids, const RayBundle& bundle)
+    : solids_(solids), bundle_(bundle) {}
 
 BeamView::BeamView(std::span<const BeamSolid> solids, const EyeRays& eye, LitPlane mirror)
     : solids_(solids), is_eye_(true), mirror_(mirror), apex_(eye.position) {

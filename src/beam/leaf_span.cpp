@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <type_traits>
 
 namespace arris {
 namespace {
@@ -48,21 +49,28 @@ class SpanMaker {
  private:
   // Met by rays that pass all edges on the side that the corners' turn tells; entered for good.
   std::optional<LeafSpan> make_facet(const Facet& facet) {
-    const Sign wanted = Sign(view_.facet_turn(place_.solid, place_.leaf));
-    if (wanted == Sign::unknown) return std::nullopt;  // it is seen as a line
+    const BeamSurface surface{place_.solid, facet.plane.plane, Root::none};
+    if (view_.starts_on(surface)) return std::nullopt;
+    const bool is_bundle = view_.kind() == BeamKind::bundle;
+    const Sign wanted =
+        is_bundle ? side_of_bundle(facet) : Sign(view_.facet_turn(place_.solid, place_.leaf));
+    if (wanted == Sign::unknown && !is_bundle) return std::nullopt;  // it is seen as a line
     bool within = true;
     for (std::size_t k = 0; k < 3; ++k) {
       const BeamSurface edge{place_.solid, facet.edges[k], Root::none};
-      const Sign side = oracle_.find(key_of(Of::side, edge), view_.side(place_.solid, edge.index));
+      const Sign side = view_.with_side(place_.solid, edge.index, [&](const auto& form) {
+        return oracle_.find(key_of(Of::side, edge), form);
+      });
       const Sign own = facet.turned[k] ? -side : side;
-      if (own == -wanted) return std::nullopt;
+      if (wanted != Sign::unknown && own == -wanted) return std::nullopt;
       within = within && own == wanted;
     }
-    const PlaneForm& form = view_.plane(place_.solid, facet.plane.plane);
-    span_.enter = quotient(absolute(range_over(form.height, oracle_.rect())),
-                           absolute(range_over(form.slope, oracle_.rect())));
+    span_.enter = view_.with_plane(place_.solid, facet.plane.plane, [&](const auto& form) {
+      return intersection(quotient(absolute(range_over(form.height, oracle_.rect())),
+                                   absolute(range_over(form.slope, oracle_.rect()))),
+                          depth_from_base(form));
+    });
     if (!(span_.enter.lo <= depth_end_)) return std::nullopt;
-    const BeamSurface surface{place_.solid, facet.plane.plane, Root::none};
     bool beyond = true;
     if (counts_from_mirror(view_, place_)) {
       const LeafSpan start = make_plane_span(view_, view_.mirror(), oracle_.rect());
@@ -73,13 +81,25 @@ class SpanMaker {
     }
     span_.leave = {kInfinity, kInfinity};
     span_.entering.push_back({span_.enter, surface, 0});
+    if (wanted == Sign::unknown) {
+      span_.start_open = true;  // some rays may begin on either side of it
+      return std::move(span_);
+    }
     span_.facet_positive = wanted == Sign::positive;
     span_.certain = within && beyond && span_.enter.hi < kInfinity;
     return std::move(span_);
   }
+  // 1: the bundle's rays begin where they see the facet's corners turn counter-clockwise.
+  [[nodiscard]] Sign side_of_bundle(const Facet& facet) const {
+    const BundlePlane& form = view_.bundle_plane(place_.solid, facet.plane.plane);
+    const Sign height = sign_of(range_over(form.height, oracle_.rect()));
+    return facet.plane.flipped ? height : -height;
+  }
   std::optional<LeafSpan> make_volume() {
-    if (!view_.starts_in_volume(place_.solid, place_.leaf)) return std::nullopt;
-    span_.starts_inside = span_.certain = true;
+    const Cover start = view_.start_in_volume(place_.solid, place_.leaf);
+    if (start == Cover::out) return std::nullopt;
+    span_.start_open = start == Cover::on;
+    span_.starts_inside = span_.certain = start == Cover::in;
     span_.leave = {kInfinity, kInfinity};
     return std::move(span_);
   }
@@ -142,9 +162,24 @@ class SpanMaker {
     return true;
   }
 
+  // The plane's depth, for a bundle from where the rays are near it; for others quotients tell all.
+  [[nodiscard]] static Interval depth_from_base(const PlaneForm&) {
+    return {-kInfinity, kInfinity};
+  }
+  [[nodiscard]] Interval depth_from_base(const BundlePlane& form) const {
+    const Interval slope = range_over(form.slope, oracle_.rect());
+    if (slope.contains(0)) return {-kInfinity, kInfinity};
+    const double base = middle_depth(form);
+    return Interval(base) - range_over(begun_at(form, base).height, oracle_.rect()) / slope;
+  }
+
   // False: every ray misses.
   bool add_plane(PlaneRef ref, std::uint32_t face) {
-    const PlaneForm& form = view_.plane(place_.solid, ref.plane);
+    return view_.with_plane(place_.solid, ref.plane,
+                            [&](const auto& form) { return add_plane(form, ref, face); });
+  }
+  template <class Form>
+  bool add_plane(const Form& form, PlaneRef ref, std::uint32_t face) {
     const BeamSurface surface{place_.solid, ref.plane, Root::none};
     Sign height = oracle_.find(key_of(Of::height, surface), form.height);
     Interval slopes = range_over(form.slope, oracle_.rect());
@@ -155,8 +190,8 @@ class SpanMaker {
       height = -height;
       slopes = -slopes;
     }
-    if (height == Sign::unknown && !view_.direction_fixed()) {
-      // The eye is in the plane: rays are on one side of it, for good.
+    if (begins_in_plane(view_, surface, height)) {
+      // Rays are on one side of it, for good.
       if (slopes.lo >= 0) return false;
       span_.start_open = span_.start_open || slopes.hi > 0;
       return true;
@@ -166,15 +201,18 @@ class SpanMaker {
       return true;
     }
     const Interval distance = absolute(range_over(form.height, oracle_.rect()));
+    const Interval near = depth_from_base(form);
     if (height == Sign::negative) {
       if (slopes.hi <= 0) return true;
-      const Interval depth = quotient(distance, {std::max(slopes.lo, 0.0), slopes.hi});
+      const Interval depth =
+          intersection(quotient(distance, {std::max(slopes.lo, 0.0), slopes.hi}), near);
       if (depth.lo <= depth_end_) span_.leaving.push_back({depth, surface, face});
       return true;
     }
     span_.starts_inside = false;
     if (slopes.lo >= 0) return false;
-    const Interval depth = quotient(distance, {std::max(-slopes.hi, 0.0), -slopes.lo});
+    const Interval depth =
+        intersection(quotient(distance, {std::max(-slopes.hi, 0.0), -slopes.lo}), near);
     span_.entering.push_back({depth, surface, face});
     return depth.lo <= depth_end_;
   }
@@ -187,16 +225,21 @@ class SpanMaker {
   }
 
   bool add_quadric(std::uint32_t index, std::uint32_t face) {
+    return view_.with_quadric(place_.solid, index,
+                              [&](const auto& form) { return add_quadric(form, index, face); });
+  }
+  template <class Form>
+  bool add_quadric(const Form& form, std::uint32_t index, std::uint32_t face) {
     const CsgQuadric& quadric = view_.shape(place_.solid).quadrics()[index];
-    const QuadricForm& form = view_.quadric(place_.solid, index);
     BeamSurface surface{place_.solid, index, Root::nearer};
     span_.quadric = surface;
+    const bool is_cone = quadric.form == CsgQuadric::Form::cone;
+    if (view_.starts_on(surface)) return add_from_itself(form, surface, face, is_cone);
     const Sign value = oracle_.find(key_of(Of::value, surface), form.value);
     if (value == Sign::unknown) {
       span_.start_open = true;
       return true;
     }
-    const bool is_cone = quadric.form == CsgQuadric::Form::cone;
     const Bounds b = bounds_of(form, surface, is_cone);
     if (value == Sign::positive) {
       span_.starts_inside = false;
@@ -216,22 +259,25 @@ class SpanMaker {
     const Interval sum = b.half_slope + b.root;
     Interval depth = quotient(absolute(b.value), {std::max(sum.lo, 0.0), std::max(sum.hi, 0.0)});
     if (is_cone && b.curvature.lo <= 0) depth.hi = kInfinity;
+    depth = intersection(depth, from_base(b, false));
     if (depth.lo <= depth_end_) span_.leaving.push_back({depth, surface, face});
     return true;
   }
 
   struct Bounds {
     Interval value, half_slope, curvature, discriminant, root;
+    double base = 0;  // see BundleQuadric
+    Interval base_half_slope;
     Sign tangents = Sign::unknown;  // positive: within both; negative: outside one
   };
-  [[nodiscard]] Bounds bounds_of(const QuadricForm& form, const BeamSurface& s,
-                                 bool is_cone) const {
+  template <class Form>
+  [[nodiscard]] Bounds bounds_of(const Form& form, const BeamSurface& s, bool is_cone) const {
     const Rect& rect = oracle_.rect();
-    const bool fixed = view_.direction_fixed();
+    const BeamKind kind = view_.kind();
     Bounds b;
-    b.value = fixed ? range_over(form.value, rect) : form.value.c;
+    b.value = kind == BeamKind::from_point ? form.value.c : range_over(form.value, rect);
     b.half_slope = range_over(form.half_slope, rect);
-    b.curvature = fixed ? form.curvature.c : range_over(form.curvature, rect);
+    b.curvature = kind == BeamKind::parallel ? form.curvature.c : range_over(form.curvature, rect);
     b.discriminant = range_over(form.discriminant, rect);
     const auto clip = [&](Interval& range, Of of, const auto& polynomial) {
       const Sign sign = oracle_.find(key_of(of, s), polynomial);
@@ -242,6 +288,15 @@ class SpanMaker {
     clip(b.curvature, Of::curvature, form.curvature);
     clip(b.discriminant, Of::discriminant, form.discriminant);
     if (!is_cone) b.curvature.lo = std::max(b.curvature.lo, 0.0);
+    if constexpr (std::is_same_v<Form, QuadricForm>) clip_by_tangents(form, s, b);
+    b.root = square_root(b.discriminant);
+    if constexpr (std::is_same_v<Form, BundleQuadric>) {
+      b.base = form.base;
+      b.base_half_slope = range_over(form.base_half_slope, rect);
+    }
+    return b;
+  }
+  void clip_by_tangents(const QuadricForm& form, const BeamSurface& s, Bounds& b) const {
     if (form.has_tangents) {
       const Sign low = oracle_.find(key_of(Of::tangent_low, s), form.tangents[0]);
       const Sign high = oracle_.find(key_of(Of::tangent_high, s), form.tangents[1]);
@@ -249,11 +304,16 @@ class SpanMaker {
       if (low == Sign::positive && high == Sign::positive) {
         b.tangents = Sign::positive;
         b.discriminant.lo = std::max(b.discriminant.lo, 0.0);
-        if (!fixed) b.half_slope.hi = std::min(b.half_slope.hi, 0.0);
+        if (view_.kind() == BeamKind::from_point) b.half_slope.hi = std::min(b.half_slope.hi, 0.0);
       }
     }
-    b.root = square_root(b.discriminant);
-    return b;
+  }
+
+  // The depth of the root on that side of the middle, from the middle of a bundle's rays; else anything.
+  [[nodiscard]] Interval from_base(const Bounds& b, bool nearer) const {
+    if (view_.kind() != BeamKind::bundle || !(b.curvature.lo > 0)) return {-kInfinity, kInfinity};
+    const Interval root = nearer ? -b.root : b.root;
+    return Interval(b.base) + (root - b.base_half_slope) / b.curvature;
   }
 
   bool add_from_outside(const Bounds& b, BeamSurface surface, std::uint32_t face) {
@@ -262,20 +322,49 @@ class SpanMaker {
     if (!bends_out && (b.discriminant.hi <= 0 || b.half_slope.lo >= 0)) return false;
     if (b.tangents == Sign::negative) return false;
     const Interval sum = b.root - b.half_slope;
-    const Interval depth = quotient(b.value, {std::max(sum.lo, 0.0), std::max(sum.hi, 0.0)});
-    if (!(depth.lo <= depth_end_)) return false;
+    const Interval depth =
+        intersection(quotient(b.value, {std::max(sum.lo, 0.0), std::max(sum.hi, 0.0)}),
+                     from_base(b, true));
+    if (!(depth.lo <= depth_end_) || !(depth.lo <= depth.hi)) return false;
     span_.entering.push_back({depth, surface, face});
     if (b.curvature.hi > 0) {
       surface.root = Root::farther;
       Interval far = quotient({std::max(sum.lo, 0.0), std::max(sum.hi, 0.0)},
                               {std::max(b.curvature.lo, 0.0), b.curvature.hi});
+      far = intersection(far, from_base(b, false));
+      if (!(far.lo <= far.hi)) return false;
       far.lo = std::max(far.lo, depth.lo);
       span_.leaving.push_back({far, surface, face});
     }
     const bool crosses = b.tangents == Sign::positive || b.discriminant.lo > 0;
     const bool ahead =
-        b.half_slope.hi < 0 || (b.tangents == Sign::positive && !view_.direction_fixed());
+        b.half_slope.hi < 0 || (b.tangents == Sign::positive && view_.kind() == BeamKind::from_point);
     needs_quadric_ = !(b.curvature.hi < 0 || (crosses && ahead));
+    return true;
+  }
+
+  // Rays that begin on the quadric meet it again at -2 half_slope / curvature: inside to where they leave it, or to the
+  // other half of a double cone.
+  template <class Form>
+  bool add_from_itself(const Form& form, BeamSurface surface, std::uint32_t face, bool is_cone) {
+    const Sign slope = oracle_.find(key_of(Of::half_slope, surface), form.half_slope);
+    const CsgQuadric& quadric = view_.shape(place_.solid).quadrics()[surface.index];
+    const Sign half = is_cone ? half_of(quadric) : Sign::positive;
+    const Sign own =
+        is_cone ? oracle_.find(key_of(Of::along, surface), form.along) : Sign::positive;
+    if (slope == Sign::unknown || own == Sign::unknown) {
+      span_.start_open = true;
+      return true;
+    }
+    const Bounds b = bounds_of(form, surface, is_cone);
+    if ((own == half) == (slope == Sign::positive)) return false;
+    if (own != half) return add_from_other_half(b, surface, face);
+    surface.root = Root::leaving;
+    span_.quadric.reset();
+    const Interval depth =
+        quotient(absolute(b.half_slope * Interval(2)),
+                 {std::max(b.curvature.lo, 0.0), std::max(b.curvature.hi, 0.0)});
+    if (depth.lo <= depth_end_) span_.leaving.push_back({depth, surface, face});
     return true;
   }
 
@@ -326,12 +415,17 @@ class SpanMaker {
 
 }  // namespace
 
+bool begins_in_plane(const BeamView& view, const BeamSurface& plane, Sign height) {
+  return view.starts_on(plane) ||
+         (height == Sign::unknown && view.kind() == BeamKind::from_point);
+}
+
 bool counts_from_mirror(const BeamView& view, const LeafPlace& place) {
   return view.is_mirrored() && view.shape(place.solid).is_mesh();
 }
 
 LeafSpan make_plane_span(const BeamView& view, const LitPlane& plane, const Rect& rect) {
-  const PlaneForm& form = view.plane(plane.solid, plane.plane);
+  const PlaneForm& form = view.plane(plane.solid, plane.plane);  // no view of a bundle has any
   LeafSpan span;
   span.enter =
       quotient(absolute(range_over(form.height, rect)), absolute(range_over(form.slope, rect)));

@@ -19,20 +19,6 @@
 
 namespace arris {
 
-// A plane or quadric of one solid's table.
-struct BeamSurface {
-  // What a ray does at a quadric: enters from outside at the nearer root, leaves it again at the farther one; leaves
-  // it having started inside; enters a cone's half having started in the other half.
-  // whole: the surface of a leaf that is not convex, and `index` is the leaf.
-  enum class Root : std::uint8_t { none, nearer, farther, leaving, other_half, whole };
-  std::uint32_t solid = 0, index = 0;
-  Root root = Root::none;  // none: a plane
-
-  friend bool operator==(const BeamSurface&, const BeamSurface&) = default;
-  [[nodiscard]] bool is_plane() const { return root == Root::none; }
-  [[nodiscard]] bool is_whole() const { return root == Root::whole; }
-};
-
 // The face of a leaf that is seen as a whole.
 inline constexpr std::uint32_t kAnyFace = ~std::uint32_t{0};
 
@@ -153,6 +139,9 @@ struct LeafPlace {
 // The depths in which we are interested end at `depth_end`. Nothing: no ray meets the leaf before it.
 std::optional<LeafSpan> make_span(const BeamView& view, LeafPlace place, double depth_end,
                                   const SignOracle& oracle);
+
+// Do all rays begin in the plane? Then they are on one side of it. `height`: of where they begin.
+bool begins_in_plane(const BeamView& view, const BeamSurface& plane, Sign height);
 
 // A mesh by itself is the union of what is behind its facets: those that lie before a mirror, behind which rays begin,
 // don't count.

@@ -2,6 +2,7 @@
 #include <cstddef>
 #include <limits>
 #include <tuple>
+#include <type_traits>
 #include <utility>
 
 #include "beam/leaf_span.h"
@@ -15,11 +16,12 @@ using Root = BeamSurface::Root;
 
 // A plane behind the ray, or that it runs along, is never met; its depth is then said to be infinite.
 Met plane_met(const BeamView& view, const SpanEnd& end, SignOracle& oracle) {
-  const PlaneForm& form = view.plane(end.surface.solid, end.surface.index);
-  const Sign height = oracle.ask(key_of(Of::height, end.surface), form.height);
-  const Sign slope = oracle.ask(key_of(Of::slope, end.surface), form.slope);
-  if (height * slope == Sign::unknown) return Met::unknown;
-  return height * slope == Sign::negative ? Met::yes : Met::no;
+  return view.with_plane(end.surface.solid, end.surface.index, [&](const auto& form) {
+    const Sign height = oracle.ask(key_of(Of::height, end.surface), form.height);
+    const Sign slope = oracle.ask(key_of(Of::slope, end.surface), form.slope);
+    if (height * slope == Sign::unknown) return Met::unknown;
+    return height * slope == Sign::negative ? Met::yes : Met::no;
+  });
 }
 
 Order order_of_sign(Sign difference) {
@@ -32,44 +34,78 @@ Order reversed(Order order) {
   return order == Order::before ? Order::after : order == Order::after ? Order::before : order;
 }
 
-Order order_of_planes(const BeamView& view, const SpanEnd& a, const SpanEnd& b,
-                      SignOracle& oracle) {
-  const PlaneForm& p = view.plane(a.surface.solid, a.surface.index);
-  const PlaneForm& q = view.plane(b.surface.solid, b.surface.index);
+// Depth at a minus depth at b, times the slopes of both.
+Quadratic difference_of(const BeamView& view, const PlaneForm& a, const PlaneForm& b) {
+  return plane_before_plane(a, b, view.kind());
+}
+Quadratic difference_of(const BeamView&, const BundlePlane& a, const BundlePlane& b) {
+  const double base = middle_depth(a);
+  return plane_before_plane(begun_at(a, base), begun_at(b, base));
+}
+
+template <class Form>
+Order order_of_planes(const BeamView& view, const SpanEnd& a, const SpanEnd& b, const Form& p,
+                      const Form& q, SignOracle& oracle) {
   const Sign slopes = oracle.ask(key_of(Of::slope, a.surface), p.slope) *
                       oracle.ask(key_of(Of::slope, b.surface), q.slope);
   if (slopes == Sign::unknown) return Order::unknown;
   const SignKey key{Of::plane_plane, a.surface.solid, a.surface.index, b.surface.solid,
                     b.surface.index};
-  return order_of_sign(slopes * oracle.ask(key, plane_before_plane(p, q, view.direction_fixed())));
+  return order_of_sign(slopes * oracle.ask(key, difference_of(view, p, q)));
+}
+Order order_of_planes(const BeamView& view, const SpanEnd& a, const SpanEnd& b,
+                      SignOracle& oracle) {
+  const BeamSurface &s = a.surface, &t = b.surface;
+  return view.kind() == BeamKind::bundle
+             ? order_of_planes(view, a, b, view.bundle_plane(s.solid, s.index),
+                               view.bundle_plane(t.solid, t.index), oracle)
+             : order_of_planes(view, a, b, view.plane(s.solid, s.index),
+                               view.plane(t.solid, t.index), oracle);
 }
 
+// A plane and a quadric. `base`: the depth that theirs are told from.
+template <class Plane, class Quadric>
+struct PlaneAndQuadric {
+  const BeamView& view;
+  const SpanEnd &plane, &root;
+  const Plane& p;
+  const Quadric& q;
+  double base = 0;
+
+  [[nodiscard]] Quadratic value_at_plane() const {
+    if constexpr (std::is_same_v<Plane, PlaneForm>) return quadric_at_plane(q, p, view.kind());
+    else return quadric_at_plane(q, p);
+  }
+  [[nodiscard]] Quadratic beyond_middle() const {
+    if constexpr (std::is_same_v<Plane, PlaneForm>) return plane_beyond_middle(q, p, view.kind());
+    else return plane_beyond_middle(q, p);
+  }
+  [[nodiscard]] SignKey key(Of of) const {
+    return {of, plane.surface.solid, plane.surface.index, root.surface.solid, root.surface.index};
+  }
+};
+
 // The plane against the middle between the roots.
-Order order_to_middle(const BeamView& view, const SpanEnd& plane, const SpanEnd& root,
-                      SignOracle& oracle) {
-  const PlaneForm& p = view.plane(plane.surface.solid, plane.surface.index);
-  const QuadricForm& q = view.quadric(root.surface.solid, root.surface.index);
-  const Interval middle =
-      -range_over(q.half_slope, oracle.rect()) / range_over(q.curvature, oracle.rect());
-  if (plane.depth.hi < middle.lo) return Order::before;
-  if (plane.depth.lo > middle.hi) return Order::after;
-  const Sign scale = oracle.ask(key_of(Of::slope, plane.surface), p.slope) *
-                     oracle.ask(key_of(Of::curvature, root.surface), q.curvature);
+template <class Pair>
+Order order_to_middle(const Pair& pair, SignOracle& oracle) {
+  const Interval middle = Interval(pair.base) - range_over(pair.q.half_slope, oracle.rect()) /
+                                                    range_over(pair.q.curvature, oracle.rect());
+  if (pair.plane.depth.hi < middle.lo) return Order::before;
+  if (pair.plane.depth.lo > middle.hi) return Order::after;
+  const Sign scale = oracle.ask(key_of(Of::slope, pair.plane.surface), pair.p.slope) *
+                     oracle.ask(key_of(Of::curvature, pair.root.surface), pair.q.curvature);
   if (scale == Sign::unknown) return Order::unknown;
-  const SignKey key{Of::plane_middle, plane.surface.solid, plane.surface.index, root.surface.solid,
-                    root.surface.index};
-  return order_of_sign(scale * oracle.ask(key, plane_beyond_middle(q, p, view.direction_fixed())));
+  return order_of_sign(scale * oracle.ask(pair.key(Of::plane_middle), pair.beyond_middle()));
 }
 
 // By whether the point on the plane is inside the quadric; where that leaves two ways, by the middle.
-Order order_of_plane_and_root(const BeamView& view, const SpanEnd& plane, const SpanEnd& root,
-                              SignOracle& oracle) {
+template <class Pair>
+Order order_of_pair(const Pair& pair, SignOracle& oracle) {
+  const BeamView& view = pair.view;
+  const SpanEnd& root = pair.root;
+  const auto& q = pair.q;
   const CsgQuadric& quadric = view.shape(root.surface.solid).quadrics()[root.surface.index];
-  const QuadricForm& q = view.quadric(root.surface.solid, root.surface.index);
-  const PlaneForm& p = view.plane(plane.surface.solid, plane.surface.index);
-  const SignKey key{Of::plane_quadric, plane.surface.solid, plane.surface.index, root.surface.solid,
-                    root.surface.index};
-  const Sign at_plane = oracle.ask(key, quadric_at_plane(q, p, view.direction_fixed()));
+  const Sign at_plane = oracle.ask(pair.key(Of::plane_quadric), pair.value_at_plane());
   if (at_plane == Sign::unknown) return Order::unknown;
   const bool inside = at_plane == Sign::negative;
   // Round quadrics lie between their roots; a cone does where the curvature is positive.
@@ -82,24 +118,42 @@ Order order_of_plane_and_root(const BeamView& view, const SpanEnd& plane, const 
   switch (root.surface.root) {
     case Root::nearer:
       if (inside) return Order::after;
-      return between ? order_to_middle(view, plane, root, oracle) : Order::before;
+      return between ? order_to_middle(pair, oracle) : Order::before;
     case Root::farther:
       if (inside || !between) return Order::before;
-      return order_to_middle(view, plane, root, oracle);
+      return order_to_middle(pair, oracle);
     case Root::leaving: {
       if (!inside) return Order::after;
       if (between) return Order::before;
       const Met leaves = decide_end_met(view, root, oracle);
       if (leaves == Met::unknown) return Order::unknown;
-      return leaves == Met::no ? Order::before : order_to_middle(view, plane, root, oracle);
+      return leaves == Met::no ? Order::before : order_to_middle(pair, oracle);
     }
     case Root::other_half:
-      return inside ? order_to_middle(view, plane, root, oracle) : Order::before;
+      return inside ? order_to_middle(pair, oracle) : Order::before;
     case Root::none:
     case Root::whole:
       break;
   }
   return Order::unknown;
+}
+
+Order order_of_plane_and_root(const BeamView& view, const SpanEnd& plane, const SpanEnd& root,
+                              SignOracle& oracle) {
+  const BeamSurface &s = plane.surface, &t = root.surface;
+  if (view.kind() != BeamKind::bundle) {
+    return order_of_pair(
+        PlaneAndQuadric<PlaneForm, QuadricForm>{view, plane, root, view.plane(s.solid, s.index),
+                                                view.quadric(t.solid, t.index)},
+        oracle);
+  }
+  // As the rays begin near the plane: from afar signs are differences of large numbers.
+  const double base = middle_depth(view.bundle_plane(s.solid, s.index));
+  const BundlePlane p = begun_at(view.bundle_plane(s.solid, s.index), base);
+  const BundleQuadric q = make_form(begun_at(view.bundle_in(t.solid), base),
+                                    view.shape(t.solid).quadrics()[t.index]);
+  return order_of_pair(PlaneAndQuadric<BundlePlane, BundleQuadric>{view, plane, root, p, q, base},
+                       oracle);
 }
 
 }  // namespace
@@ -113,14 +167,15 @@ Met decide_end_met(const BeamView& view, const SpanEnd& end, SignOracle& oracle)
                         (end.surface.root == Root::farther || end.surface.root == Root::leaving);
   if (!may_open) return Met::yes;
   // A ray that runs into the opening of a cone leaves it if it comes from the apex's side, but for good.
-  const QuadricForm& q = view.quadric(end.surface.solid, end.surface.index);
-  const Sign curvature = oracle.ask(key_of(Of::curvature, end.surface), q.curvature);
-  if (curvature == Sign::unknown) return Met::unknown;
-  if (curvature == Sign::positive) return Met::yes;
-  if (end.surface.root == Root::farther) return Met::no;
-  const Sign half_slope = oracle.ask(key_of(Of::half_slope, end.surface), q.half_slope);
-  if (half_slope == Sign::unknown) return Met::unknown;
-  return half_slope == Sign::positive ? Met::yes : Met::no;
+  return view.with_quadric(end.surface.solid, end.surface.index, [&](const auto& q) {
+    const Sign curvature = oracle.ask(key_of(Of::curvature, end.surface), q.curvature);
+    if (curvature == Sign::unknown) return Met::unknown;
+    if (curvature == Sign::positive) return Met::yes;
+    if (end.surface.root == Root::farther) return Met::no;
+    const Sign half_slope = oracle.ask(key_of(Of::half_slope, end.surface), q.half_slope);
+    if (half_slope == Sign::unknown) return Met::unknown;
+    return half_slope == Sign::positive ? Met::yes : Met::no;
+  });
 }
 
 Order order_of(const BeamView& view, const SpanEnd& a, const SpanEnd& b, SignOracle& oracle) {
@@ -161,8 +216,8 @@ Order order_of(const BeamView& view, const SpanEnd& a, const SpanEnd& b, SignOra
 namespace {
 
 // Does a ray from outside meet the quadric before it?
-Met quadric_met(const BeamView& view, const BeamSurface& s, SignOracle& oracle) {
-  const QuadricForm& q = view.quadric(s.solid, s.index);
+template <class Form>
+Met quadric_met(const BeamView& view, const Form& q, const BeamSurface& s, SignOracle& oracle) {
   const bool is_cone = view.shape(s.solid).quadrics()[s.index].form == CsgQuadric::Form::cone;
   const auto met = [](Sign sign, Sign wanted) {
     return sign == Sign::unknown ? Met::unknown : sign == wanted ? Met::yes : Met::no;
@@ -176,12 +231,14 @@ Met quadric_met(const BeamView& view, const BeamSurface& s, SignOracle& oracle) 
     const Met opens = met(oracle.ask(key_of(Of::curvature, s), q.curvature), Sign::negative);
     if (opens != Met::no) return opens;
   }
-  if (q.has_tangents) {
-    const Met low = met(oracle.ask(key_of(Of::tangent_low, s), q.tangents[0]), Sign::positive);
-    if (low != Met::yes) return low;
-    const Met high = met(oracle.ask(key_of(Of::tangent_high, s), q.tangents[1]), Sign::positive);
-    if (high != Met::yes || !view.direction_fixed()) return high;
-    return met(oracle.ask(key_of(Of::half_slope, s), q.half_slope), Sign::negative);
+  if constexpr (std::is_same_v<Form, QuadricForm>) {
+    if (q.has_tangents) {
+      const Met low = met(oracle.ask(key_of(Of::tangent_low, s), q.tangents[0]), Sign::positive);
+      if (low != Met::yes) return low;
+      const Met high = met(oracle.ask(key_of(Of::tangent_high, s), q.tangents[1]), Sign::positive);
+      if (high != Met::yes || view.kind() == BeamKind::from_point) return high;
+      return met(oracle.ask(key_of(Of::half_slope, s), q.half_slope), Sign::negative);
+    }
   }
   const Met hits = met(oracle.ask(key_of(Of::discriminant, s), q.discriminant), Sign::positive);
   if (hits != Met::yes) return hits;
@@ -197,7 +254,9 @@ Met facet_met(const BeamView& view, const LeafSpan& span, LeafPlace place, SignO
   const Sign wanted = *span.facet_positive ? Sign::positive : Sign::negative;
   for (std::size_t k = 0; k < 3; ++k) {
     const BeamSurface edge{place.solid, facet.edges[k], Root::none};
-    const Sign side = oracle.ask(key_of(Of::side, edge), view.side(place.solid, edge.index));
+    const Sign side = view.with_side(place.solid, edge.index, [&](const auto& form) {
+      return oracle.ask(key_of(Of::side, edge), form);
+    });
     if (side == Sign::unknown) return Met::unknown;
     if ((facet.turned[k] ? -side : side) != wanted) return Met::no;
   }
@@ -217,27 +276,32 @@ Met decide_met(const BeamView& view, const LeafSpan& span, LeafPlace place, Sign
   if (span.entering.size() == 1 && span.entering[0].surface.is_whole()) return Met::unknown;
   if (span.start_open) {
     // make_span() found a sign open that it could not ask for.
+    if (view.shape(place.solid).convex(place.leaf) == nullptr) return Met::unknown;
     const ConvexLeaf& leaf = *view.shape(place.solid).convex(place.leaf);
     for (const PlaneRef& ref : leaf.planes) {
       const BeamSurface s{place.solid, ref.plane, Root::none};
-      const PlaneForm& form = view.plane(s.solid, s.index);
-      const bool eye_in_plane = !view.direction_fixed() &&
-                                oracle.find(key_of(Of::height, s), form.height) == Sign::unknown;
-      const Sign sign = eye_in_plane ? oracle.ask(key_of(Of::slope, s), form.slope)
-                                     : oracle.ask(key_of(Of::height, s), form.height);
+      const Sign sign = view.with_plane(s.solid, s.index, [&](const auto& form) {
+        const Sign height = oracle.find(key_of(Of::height, s), form.height);
+        return begins_in_plane(view, s, height) ? oracle.ask(key_of(Of::slope, s), form.slope)
+                                                : oracle.ask(key_of(Of::height, s), form.height);
+      });
       if (sign == Sign::unknown) return Met::unknown;
     }
     if (leaf.quadric) {
       const BeamSurface s{place.solid, *leaf.quadric, Root::nearer};
-      const QuadricForm& q = view.quadric(s.solid, s.index);
-      if (oracle.ask(key_of(Of::value, s), q.value) != Sign::unknown) {
-        oracle.ask(key_of(Of::along, s), q.along);
-      }
+      view.with_quadric(s.solid, s.index, [&](const auto& q) {
+        const Sign start = view.starts_on(s)
+                               ? oracle.ask(key_of(Of::half_slope, s), q.half_slope)
+                               : oracle.ask(key_of(Of::value, s), q.value);
+        if (start != Sign::unknown) oracle.ask(key_of(Of::along, s), q.along);
+      });
     }
     return Met::unknown;
   }
   if (span.quadric) {
-    const Met met = quadric_met(view, *span.quadric, oracle);
+    const BeamSurface& s = *span.quadric;
+    const Met met = view.with_quadric(
+        s.solid, s.index, [&](const auto& q) { return quadric_met(view, q, s, oracle); });
     if (met != Met::yes) return met;
   }
   for (const SpanEnd& e : span.entering) {

@@ -1,5 +1,9 @@
 #include "csg/cover.h"
 
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
 namespace arris {
 namespace {
 
@@ -34,6 +38,26 @@ Interval quadratic_range(const SpaceCell& cell, Vec3d weights) {
     }
   }
   return range;
+}
+
+std::optional<Interval> depths_in(const Box3d& box, const Vec3i& origin, const Vec3i& direction,
+                                  double end) {
+  Interval depths(0, end);
+  // To where some value + t · slope ≤ 0.
+  const auto cut = [&](Interval value, double slope) {
+    const Interval limit = -Interval(value.lo) / Interval(slope);
+    if (slope > 0) depths.hi = std::min(depths.hi, limit.hi);
+    if (slope < 0) depths.lo = std::max(depths.lo, limit.lo);
+    if (slope == 0 && value.lo > 0) depths.lo = std::numeric_limits<double>::infinity();
+  };
+  for (int k = 0; k < 3; ++k) {
+    cut(Interval(origin[k].lo) - Interval(box.high[k]), direction[k].lo);
+    cut(Interval(box.low[k]) - Interval(origin[k].hi), -direction[k].hi);
+  }
+  // Both ends infinite: an endless box that some axis leaves for good.
+  return depths.lo <= depths.hi && depths.lo < std::numeric_limits<double>::infinity()
+             ? std::optional(depths)
+             : std::nullopt;
 }
 
 double radius_of(const SpaceCell& cell) {

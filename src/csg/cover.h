@@ -6,6 +6,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 
 #include "arris/math.h"
 #include "base/interval.h"
@@ -101,6 +102,10 @@ inline Box3d box_of(const SpaceCell& cell) {
                  z = linear_range(cell, {0, 0, 1});
   return {{x.lo, y.lo, z.lo}, {x.hi, y.hi, z.hi}};
 }
+
+// The t in [0, end] at which a ray of these origins and directions may be in the box; nothing: none is, ever.
+std::optional<Interval> depths_in(const Box3d& box, const Vec3i& origin, const Vec3i& direction,
+                                  double end);
 
 // The values of Σ weights_i x_i² over the cell. Exact but for rounding where the half axes are orthogonal under the
 // weights (boxes under similarities; along the axis for cylinders), else too wide by the square of the cell's size.

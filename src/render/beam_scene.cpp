@@ -111,12 +111,15 @@ MaterialId BeamScene::material_of(const SeenSurface& seen) const {
   return arris::material_of(record, facet->triangle);
 }
 
+bool BeamScene::is_smooth_mesh(const SeenSurface& seen) const {
+  return objects_[seen.solid] == nullptr &&
+         scene_.geometry().embree.records()[records_[seen.solid]].normals != nullptr;
+}
+
 bool BeamScene::is_curved(const SeenSurface& seen) const {
-  if (objects_[seen.solid] != nullptr) {
-    return seen.face == kAnyFace || !solids_[seen.solid].shape->is_flat(seen.leaf, seen.face);
-  }
-  const GeometryRecord& record = scene_.geometry().embree.records()[records_[seen.solid]];
-  return record.normals != nullptr;
+  return is_smooth_mesh(seen) ||
+         (objects_[seen.solid] != nullptr &&
+          (seen.face == kAnyFace || !solids_[seen.solid].shape->is_flat(seen.leaf, seen.face)));
 }
 
 SurfaceHit BeamScene::csg_hit(const SeenSurface& seen, const Ray& world) const {

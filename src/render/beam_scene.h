@@ -30,6 +30,8 @@ class BeamScene {
   // first.
   [[nodiscard]] SurfaceHit hit_at(const SeenSurface& seen, const Ray& world) const;
   [[nodiscard]] MaterialId material_of(const SeenSurface& seen) const;
+  // A mesh with normals of its own, which turn where it is flat.
+  [[nodiscard]] bool is_smooth_mesh(const SeenSurface& seen) const;
   // Its shading varies from point to point.
   [[nodiscard]] bool is_curved(const SeenSurface& seen) const;
 

@@ -80,6 +80,7 @@ bool is_mirror(const BeamScene& scene, const SeenSurface& seen) {
   const PreparedMaterial& material =
       scene.scene().geometry().materials[scene.material_of(seen).index];
   if (material.textured || material.translucent || material.emissive) return false;
+  if (scene.is_smooth_mesh(seen)) return false;
   const Bsdf bsdf = make_bsdf(material.factors, Vec3f(0, 0, 1), MediumSide::outside);
   return is_delta_only(bsdf) && material.factors.transmission == 0;
 }

@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <map>
+#include <string>
 #include <utility>
 
 #include "support/beam_truth.h"
@@ -36,7 +37,7 @@ bool is_mirror_face(const SeenSurface& seen) {
 
 // How many mirrors the ray meets, and what it sees in the end.
 using MirroredKey = std::pair<std::size_t, SeenKey>;
-MirroredKey follow(const BeamScene& scene, Ray ray) {
+MirroredKey follow(const BeamScene& scene, const IsMirror& is_mirror, Ray ray) {
   std::vector<BeamPart> roots;
   for (std::uint32_t i = 0; i < scene.placed.size(); ++i) {
     roots.push_back({i, scene.placed[i].shape->root()});
@@ -44,61 +45,112 @@ MirroredKey follow(const BeamScene& scene, Ray ray) {
   for (std::size_t mirrors = 0;; ++mirrors) {
     const std::optional<RaySight> sight = see(scene.placed, roots, ray);
     if (!sight) return {mirrors, key_of(std::nullopt)};
-    if (mirrors == kMostMirrors || !is_mirror_face(sight->seen)) {
-      return {mirrors, key_of(sight->seen)};
-    }
-    const int axis = sight->seen.solid == 0 ? 2 : 1;
+    const SeenSurface& seen = sight->seen;
+    if (mirrors == kMostMirrors || !is_mirror(seen)) return {mirrors, key_of(seen)};
+    const BeamSolid& solid = scene.placed[seen.solid];
+    const Ray own{transform_point(solid.object_from_world, ray.origin),
+                  transform_vector(solid.object_from_world, ray.direction)};
+    const CsgBoundary boundary{sight->depth, seen.leaf, seen.face, seen.entering};
+    const Vec3d n = normalize(transpose(solid.object_from_world.linear) *
+                              solid.shape->csg().outward_normal(boundary, own));
     ray.origin = ray.origin + ray.direction * sight->depth;
-    ray.direction[axis] = -ray.direction[axis];
-    ray.origin = ray.origin + ray.direction * 1e-9;
+    ray.direction = ray.direction - n * (2 * dot(n, ray.direction));
+    ray.origin = ray.origin + normalize(ray.direction) * 1e-7;
+  }
+}
+
+struct MirrorCounts {
+  double mirrored = 0, open = 0, area = 0;  // in pixels
+};
+
+// Holds what the tracer says of each pixel against a grid of rays.
+void check_shares(const BeamScene& scene, const IsMirror& is_mirror, MirrorCounts& counts,
+                  const std::string& name) {
+  BeamOptions options;
+  options.is_mirror = is_mirror;
+  const BeamTracer tracer(scene.placed, scene.eye, scene.width, scene.height, options);
+  for (const BeamTile& tile : tracer.make_tiles()) {
+    tracer.trace_tile(tile, [&](const BeamPixel& pixel) {
+      constexpr int kGrid = 20;
+      std::map<MirroredKey, double> truth;
+      for (int k = 0; k < kGrid * kGrid; ++k) {
+        const Vec2d at{pixel.x + (k % kGrid + 0.5) / kGrid, pixel.y + (k / kGrid + 0.5) / kGrid};
+        truth[follow(scene, is_mirror, ray_through(scene.eye, at))] += 1.0 / (kGrid * kGrid);
+      }
+      std::map<MirroredKey, std::pair<double, double>> bounds;
+      double unknown = 0;
+      for (const PixelSurface& s : pixel.surfaces) {
+        if (s.mirror_open) unknown += s.hi;
+        auto& [lo, hi] = bounds[{s.mirrors.size(), key_of(s.seen)}];
+        lo += s.lo;
+        hi += s.hi;
+        if (!s.mirrors.empty()) counts.mirrored += s.lo;
+      }
+      const double slack = 3.0 / kGrid + unknown;
+      for (const auto& [key, share] : truth) {
+        const auto at = bounds.find(key);
+        ASSERT_TRUE(at != bounds.end() || share <= slack) << name;
+        if (at == bounds.end()) continue;
+        EXPECT_GE(share, at->second.first - slack) << name;
+        EXPECT_LE(share, at->second.second + slack) << name;
+      }
+      for (const auto& [key, bound] : bounds) {
+        if (truth.contains(key)) continue;
+        EXPECT_LE(bound.first, slack) << name;
+      }
+      counts.open += std::min(unknown, 1.0);
+      counts.area += 1;
+    });
   }
 }
 
 TEST(beam_mirror, shares_of_what_mirrors_show_hold_what_rays_find) {
   CsgRandom random(31);
-  double mirrored = 0;
-  int open = 0, pixels = 0;
+  MirrorCounts counts;
   for (int i = 0; i < 12; ++i) {
-    const BeamScene scene = mirror_scene(random, 1 + i % 3);
-    BeamOptions options;
-    options.is_mirror = is_mirror_face;
-    const BeamTracer tracer(scene.placed, scene.eye, 4, 4, options);
-    for (const BeamTile& tile : tracer.make_tiles()) {
-      tracer.trace_tile(tile, [&](const BeamPixel& pixel) {
-        constexpr int kGrid = 20;
-        std::map<MirroredKey, double> truth;
-        for (int k = 0; k < kGrid * kGrid; ++k) {
-          const Vec2d at{pixel.x + (k % kGrid + 0.5) / kGrid, pixel.y + (k / kGrid + 0.5) / kGrid};
-          truth[follow(scene, ray_through(scene.eye, at))] += 1.0 / (kGrid * kGrid);
-        }
-        std::map<MirroredKey, std::pair<double, double>> bounds;
-        double unknown = 0;
-        for (const PixelSurface& s : pixel.surfaces) {
-          if (s.mirror_open) unknown += s.hi;
-          auto& [lo, hi] = bounds[{s.mirrors.size(), key_of(s.seen)}];
-          lo += s.lo;
-          hi += s.hi;
-          if (!s.mirrors.empty()) mirrored += s.lo;
-        }
-        const double slack = 3.0 / kGrid + unknown;
-        for (const auto& [key, share] : truth) {
-          const auto at = bounds.find(key);
-          ASSERT_TRUE(at != bounds.end() || unknown > 0) << i;
-          if (at == bounds.end()) continue;
-          EXPECT_GE(share, at->second.first - slack) << i;
-          EXPECT_LE(share, at->second.second + slack) << i;
-        }
-        for (const auto& [key, bound] : bounds) {
-          if (truth.contains(key)) continue;
-          EXPECT_LE(bound.first, slack) << i;
-        }
-        open += unknown > 1.0 / 512 ? 1 : 0;
-        ++pixels;
-      });
-    }
+    check_shares(mirror_scene(random, 1 + i % 3), is_mirror_face, counts, std::to_string(i));
   }
-  EXPECT_GT(mirrored, pixels / 3);  // the scene shows what it is to
-  EXPECT_LT(open, pixels / 10);
+  EXPECT_GT(counts.mirrored, counts.area / 3);  // the scene shows what it is to
+  EXPECT_LT(counts.open, counts.area / 20);
+}
+
+// Balls, rods, funnels and dents that reflect everything, on a floor among other things.
+BeamScene curved_mirror_scene(CsgRandom& random, int kind) {
+  BeamScene scene;
+  scene.width = scene.height = 8;
+  const Affine3d turned = random_placement(random, 0);
+  if (kind == 0) {
+    scene.add(one_leaf(CsgSphere{1.2}), turned);
+  } else if (kind == 1) {
+    scene.add(one_leaf(random_convex(random)), turned);
+  } else {
+    // A dent in a block: a concave mirror, in which it may see itself.
+    scene.add(flat_tree(CsgOperation::subtract,
+                        {{CsgBox{{-2, -1.5, -2}, {2, 2, 2}}, {}, {}},
+                         {CsgSphere{1.6}, {{}, {0, -2 - uniform(random, 0, 0.3), 0.3}}, {}}}));
+  }
+  scene.add(one_leaf(CsgBox{{-8, -8, -3}, {8, 8, -2.2}}));
+  for (int i = 0; i < 4; ++i) {
+    scene.add(one_leaf(random_convex(random)),
+              {{{0.3, 0, 0}, {0, 0.3, 0}, {0, 0, 0.3}},
+               {uniform(random, -2.5, 2.5), uniform(random, -4, -2), uniform(random, -2, 2.5)}});
+  }
+  scene.eye = look_at({uniform(random, -1, 1), -6, 1}, {0, 0, 0}, 22, 8, 8);
+  return scene;
+}
+
+TEST(beam_mirror, shares_of_what_curved_mirrors_show_hold_what_rays_find) {
+  CsgRandom random(32);
+  for (const int kind : {0, 1, 2}) {
+    MirrorCounts counts;
+    for (int i = 0; i < 8; ++i) {
+      check_shares(
+          curved_mirror_scene(random, kind), [](const SeenSurface& seen) { return seen.solid == 0; },
+          counts, std::to_string(kind) + "/" + std::to_string(i));
+    }
+    EXPECT_GT(counts.mirrored, counts.area / 5);
+    EXPECT_LT(counts.open, counts.area / 200);
+  }
 }
 
 }  // namespace

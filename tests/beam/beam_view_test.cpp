@@ -211,7 +211,7 @@ TEST_P(BeamViewTest, tangents_tell_which_rays_meet_a_cylinder) {
       const Vec3r d = map_real(quadrics[i].unit_from_object.linear, ray.direction);
       const bool is_cylinder = quadrics[i].form == CsgQuadric::Form::cylinder;
       const bool outside = o.x * o.x + o.y * o.y > 1 + 1e-9L;
-      const bool parallel = scene.view->direction_fixed();
+      const bool parallel = scene.view->kind() == BeamKind::parallel;
       ASSERT_EQ(form.has_tangents, is_cylinder && (parallel || outside));
       if (!form.has_tangents) continue;
       // The line's distance from the axis.
@@ -240,7 +240,7 @@ TEST_P(BeamViewTest, orders_of_surfaces_are_those_of_their_depths) {
         const auto& planes = scene.beam.placed[solid].shape->planes();
         const auto& others = scene.beam.placed[other].shape->planes();
         const std::optional<ViewRay> other_ray = scene.ray(other, at);
-        const bool fixed = scene.view->direction_fixed();
+        const BeamKind kind = scene.view->kind();
         for (std::uint32_t i = 0; i < planes.size(); i += 3) {
           const PlaneForm& p = scene.view->plane(solid, i);
           const Real p_height = height_of(planes[i], ray.origin) * ray.weight;
@@ -249,7 +249,7 @@ TEST_P(BeamViewTest, orders_of_surfaces_are_those_of_their_depths) {
           for (std::uint32_t k = 0; k < others.size(); k += 4) {
             const Real slope = dot(Vec3r(others[k].normal), other_ray->direction) * ray.weight;
             const Real other_depth = -height_of(others[k], other_ray->origin) * ray.weight / slope;
-            const Quadratic before = plane_before_plane(p, scene.view->plane(other, k), fixed);
+            const Quadratic before = plane_before_plane(p, scene.view->plane(other, k), kind);
             const Real truth = (depth - other_depth) * p_slope * slope;
             ASSERT_TRUE(
                 holds_closely(value_at(before, at), truth, scale_of(ray) * scale_of(*other_ray)));
@@ -264,12 +264,12 @@ TEST_P(BeamViewTest, orders_of_surfaces_are_those_of_their_depths) {
             const Vec3r d = map_real(quadric.unit_from_object.linear, other_ray->direction);
             const Vec3r point = o + d * depth;
             const Real value = product_of(quadric, point, point) - Real(constant_of(quadric.form));
-            ASSERT_TRUE(holds_closely(value_at(quadric_at_plane(q, p, fixed), at),
+            ASSERT_TRUE(holds_closely(value_at(quadric_at_plane(q, p, kind), at),
                                       value * square_of(ray.weight * p_slope), scale));
             const Real curvature = product_of(quadric, d, d);
             const Real middle = -product_of(quadric, o, d) / curvature;
             ASSERT_TRUE(holds_closely(
-                value_at(plane_beyond_middle(q, p, fixed), at),
+                value_at(plane_beyond_middle(q, p, kind), at),
                 (depth - middle) * p_slope * curvature * square_of(ray.weight), scale));
             ++quadrics_seen;
           }
@@ -308,7 +308,7 @@ TEST_P(BeamViewTest, sides_are_those_on_which_rays_pass_edges) {
           // The line passes through the triangle, ahead or behind.
           const CsgPlane& plane = shape.planes()[facet->plane.plane];
           const Real t = -height_of(plane, ray.origin) / dot(Vec3r(plane.normal), ray.direction);
-          const bool ahead = t > 0 || scene.view->direction_fixed();
+          const bool ahead = t > 0 || scene.view->kind() == BeamKind::parallel;
           ASSERT_EQ(turn, (positive == 3) == ahead ? 1 : -1);
           ++met;
         }
@@ -489,11 +489,13 @@ TEST(beam_view, volumes_are_started_in_by_origins_inside) {
       return mesh_holds(mesh, transform_point(scene.placed[0].object_from_world, p));
     };
     const LitPlane lit{0, 0};
-    EXPECT_EQ(BeamView(scene.placed, scene.eye).starts_in_volume(0, volume),
-              is_in(scene.eye.position));
-    EXPECT_EQ(BeamView(scene.placed, scene.eye, lit, point, 9).starts_in_volume(0, volume),
-              is_in(point.position));
-    EXPECT_FALSE(BeamView(scene.placed, scene.eye, lit, sun, 9).starts_in_volume(0, volume));
+    const auto cover = [&](Vec3d p) { return is_in(p) ? Cover::in : Cover::out; };
+    EXPECT_EQ(BeamView(scene.placed, scene.eye).start_in_volume(0, volume),
+              cover(scene.eye.position));
+    EXPECT_EQ(BeamView(scene.placed, scene.eye, lit, point, 9).start_in_volume(0, volume),
+              cover(point.position));
+    EXPECT_EQ(BeamView(scene.placed, scene.eye, lit, sun, 9).start_in_volume(0, volume),
+              Cover::out);
     inside += is_in(scene.eye.position) ? 1 : 0;
   }
   EXPECT_GT(inside, 20);
