@@ -79,6 +79,25 @@ TEST(Render, layers_are_part_of_exr_and_beside_png) {
   EXPECT_GT(load_picture(place / "b.depth.pfm").color.at(20, 15, 0), 0.0F);
 }
 
+TEST(Render, says_how_beams_went_and_which_option_does_nothing) {
+  const Workplace place;
+  const std::string beam = " --integrator beam --size 40x30 --spp 1 -o a.png";
+  const std::string plain = place.arris("render cube.stl" + beam).err;
+  EXPECT_THAT(plain, testing::ContainsRegex("a.png: 40 x 30 pixels, [0-9]+ regions, 0 uncertified "
+                                            "pixels, "));
+  EXPECT_THAT(plain, testing::Not(HasSubstr("sample")));
+  EXPECT_THAT(plain, testing::Not(HasSubstr("--light-beams")));
+  const std::string option = " --light-beams 2";
+  EXPECT_THAT(place.arris("render cube.stl" + beam + option).err,
+              HasSubstr("--light-beams changes nothing: there are no area lights\n"));
+  test::write_text(place / "lit.toml",
+                   "[[object]]\nfile = \"cube.stl\"\n[[light]]\ntype = \"area\"\n"
+                   "position = [1, -2, 6]\ntarget = [1, 1, 1]\nsize = [1, 1]\nradiance = 6\n");
+  const Outcome lit = place.arris("render lit.toml" + beam + option);
+  EXPECT_EQ(lit.code, 0) << lit.err;
+  EXPECT_THAT(lit.err, testing::Not(HasSubstr("--light-beams")));
+}
+
 TEST(Render, bytes_do_not_depend_on_the_number_of_threads) {
   const Workplace place;
   for (const char* name : {".png", ".exr"}) {
