@@ -160,6 +160,7 @@ int run_render(const Arguments& arguments) {
   check_scene(loaded.scene, loaded.name);  // before staging adds what is not the file's
   if (loaded.is_scene_file) request.stage.source = StageOptions::Source::scene_file;
   const StagingReport staging = apply_request(loaded.scene, request, arguments);
+  if (!staging.problem.empty()) throw Error(Error::Kind::input, loaded.name, staging.problem);
   if (request.integrator == Integrator::beam) check_beam_scene(loaded.scene, loaded.name);
   stats.load_seconds = load.seconds();
 

@@ -98,6 +98,20 @@ TEST(Render, says_how_beams_went_and_which_option_does_nothing) {
   EXPECT_THAT(lit.err, testing::Not(HasSubstr("--light-beams")));
 }
 
+TEST(Render, a_model_too_large_to_be_framed_is_an_error_that_names_it_its_size_and_a_remedy) {
+  const Workplace place;
+  test::write_text(place / "big.csg", "cube(size = [500000000, 500000000, 500000000]);\n");
+  const Outcome framed = place.arris(std::string("render big.csg -o a.png") + kSmall);
+  EXPECT_EQ(framed.code, 2);
+  EXPECT_THAT(
+      framed.err,
+      testing::MatchesRegex(
+          "arris: big.csg: is too large to be framed: it reaches out to 5e.08, its ground "
+          "would to 1[.0-9]*e.10, and coordinates can be up to 1e.09; scale it to 0.09[0-9]* "
+          "of its size or less, or use --ground off\n"));
+  EXPECT_EQ(place.arris(std::string("render big.csg -o a.png --ground off") + kSmall).code, 0);
+}
+
 TEST(Render, bytes_do_not_depend_on_the_number_of_threads) {
   const Workplace place;
   for (const char* name : {".png", ".exr"}) {
