@@ -56,6 +56,7 @@ void write_picture(const RenderRequest& request, const JobResult& result, double
   SaveOptions options;
   options.exposure = exposure;
   options.attributes = attributes_of(result.part);
+  options.shown_layers = request.shown_layers;
   if (request.output == "-") {
     write_stdout(encode_picture(mean_picture(result.sum), PictureFormat::png, options));
     return;

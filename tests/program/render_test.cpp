@@ -79,6 +79,19 @@ TEST(Render, layers_are_part_of_exr_and_beside_png) {
   EXPECT_GT(load_picture(place / "b.depth.pfm").color.at(20, 15, 0), 0.0F);
 }
 
+TEST(Render, layers_beside_png_can_be_looked_at) {
+  const Workplace place;
+  const std::string render = std::string("render cube.stl") + kSmall + "--aov albedo,depth ";
+  ASSERT_EQ(place.arris(render + "-o a.jpg").code, 0);
+  const Image values = load_picture(place / "a.albedo.pfm").color;
+  const Image shown = load_picture(place / "a.albedo.png").color;
+  EXPECT_GT(values.at(20, 15, 0), 0.1F);
+  EXPECT_NEAR(shown.at(20, 15, 0), values.at(20, 15, 0), 0.01);
+  EXPECT_FALSE(std::filesystem::exists(place / "a.depth.png"));
+  ASSERT_EQ(place.arris(render + "-o b.pfm").code, 0);
+  EXPECT_FALSE(std::filesystem::exists(place / "b.albedo.png"));
+}
+
 TEST(Render, says_how_beams_went_and_which_option_does_nothing) {
   const Workplace place;
   const std::string beam = " --integrator beam --size 40x30 --spp 1 -o a.png";
