@@ -64,8 +64,9 @@ CommandRow render_row() {
          {"--aov", "LIST",
           "more layers, separated by commas: albedo, normal, depth, object, rounded, bevel_fac "
           "(path); coverage_lo, coverage_hi, uncertified, regions (beam); part of an .exr, else "
-          "beside the "
-          "picture as .NAME.pfm"},
+          "beside the picture as .NAME.pfm, and with .png and .jpg, where values go from 0 to 1, "
+          "as "
+          ".NAME.png to look at"},
          {"--exposure", "STOPS", "brightness of .png and .jpg (default: the scene's, else 0)"},
          {"--stats", "FILE", "write times, counts and memory as JSON; - for stdout"}}},
        {"Picture",

@@ -47,6 +47,8 @@ nlohmann::ordered_json to_json(const ObjectReport& o, const RoundingSummary* rou
   nlohmann::ordered_json json{{"name", o.name}};
   if (o.csg) {
     json["csg"] = {{"primitives", o.csg->primitives},
+                   {"curved", o.csg->curved},
+                   {"flat_faces", o.csg->flat_faces},
                    {"operations", o.csg->operations},
                    {"depth", o.csg->depth}};
   } else {
@@ -88,10 +90,21 @@ std::string count(std::uint64_t number, const char* what) {
   return fmt::format("{} {}{}", number, what, number == 1 ? "" : "s");
 }
 
+// "2 curved, which are exact, and 1 of 12 flat faces"
+std::string describe_surfaces(const CsgReport& csg) {
+  const std::uint64_t flat = csg.primitives - csg.curved;
+  const std::string curved =
+      fmt::format("{} curved, which {} exact", csg.curved, csg.curved == 1 ? "is" : "are");
+  const std::string faceted = fmt::format("{} of {}", flat, count(csg.flat_faces, "flat face"));
+  if (flat == 0) return curved;
+  return csg.curved == 0 ? faceted : curved + ", and " + faceted;
+}
+
 void print_csg(const ObjectReport& object) {
-  fmt::print("  solid       {} in {}, {} deep; exact surfaces\n",
-             count(object.csg->primitives, "primitive"), count(object.csg->operations, "operation"),
-             object.csg->depth);
+  const CsgReport& csg = *object.csg;
+  fmt::print("  solid       {} in {}, {} deep\n", count(csg.primitives, "primitive"),
+             count(csg.operations, "operation"), csg.depth);
+  if (csg.primitives > 0) fmt::print("  surfaces    {}\n", describe_surfaces(csg));
 }
 
 void print_mesh(const ObjectReport& object) {

@@ -1,9 +1,11 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <string>
+#include <variant>
 #include <vector>
 
 #include "arris/command_line.h"
@@ -54,6 +56,7 @@ void write_picture(const RenderRequest& request, const JobResult& result, double
   SaveOptions options;
   options.exposure = exposure;
   options.attributes = attributes_of(result.part);
+  options.shown_layers = request.shown_layers;
   if (request.output == "-") {
     write_stdout(encode_picture(mean_picture(result.sum), PictureFormat::png, options));
     return;
@@ -109,15 +112,31 @@ void report_scene(Console& console, const Scene& scene, const PrepareStats& stat
                   camera.target.y, camera.target.z, camera.fov_deg));
 }
 
+// What was done for each pixel; of beams, for all of them.
+std::string format_work(const JobResult& result) {
+  if (!result.beam) return "samples " + format_samples(result.part.samples);
+  const BeamCounts& beam = *result.beam;
+  return fmt::format("{} regions, {} uncertified {}", beam.regions, beam.uncertified_pixels,
+                     beam.uncertified_pixels == 1 ? "pixel" : "pixels");
+}
+
 void report_result(Console& console, const RenderRequest& request, const JobResult& result,
                    const Scene& scene) {
   const std::string target = request.output == "-" ? "stdout" : request.output;
-  console.report(fmt::format("{}: {} x {} pixels, samples {}, {}", target, scene.image.width_px,
-                             scene.image.height_px, format_samples(result.part.samples),
+  console.report(fmt::format("{}: {} x {} pixels, {}, {}", target, scene.image.width_px,
+                             scene.image.height_px, format_work(result),
                              format_duration(result.seconds)));
   if (result.seconds > 0) {
     console.detail(fmt::format("{:.2f} million rays per second",
                                double(result.rays.total) / result.seconds / 1e6));
+  }
+}
+
+void report_beam_options(Console& console, const BeamSettings& beam, const Scene& scene) {
+  const bool any_area_light = std::ranges::any_of(
+      scene.lights, [](const Light& light) { return std::holds_alternative<AreaLight>(light); });
+  if (beam.light_beams > 0 && !any_area_light) {
+    console.report("--light-beams changes nothing: there are no area lights");
   }
 }
 
@@ -142,6 +161,7 @@ int run_render(const Arguments& arguments) {
   check_scene(loaded.scene, loaded.name);  // before staging adds what is not the file's
   if (loaded.is_scene_file) request.stage.source = StageOptions::Source::scene_file;
   const StagingReport staging = apply_request(loaded.scene, request, arguments);
+  if (!staging.problem.empty()) throw Error(Error::Kind::input, loaded.name, staging.problem);
   if (request.integrator == Integrator::beam) check_beam_scene(loaded.scene, loaded.name);
   stats.load_seconds = load.seconds();
 
@@ -152,6 +172,7 @@ int run_render(const Arguments& arguments) {
   stats.prepare.triangles -= staging.ground_triangles;
   stats.prepare.objects -= staging.ground_triangles > 0 ? 1 : 0;
   report_scene(console, scene, stats.prepare);
+  report_beam_options(console, request.beam, scene);
 
   RenderJob job = make_job(request, scene);
   job.options.stop = &stop;

@@ -4,6 +4,8 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <iterator>
+#include <string_view>
 
 #include "arris/error.h"
 #include "arris/output_files.h"
@@ -148,6 +150,20 @@ std::string parse_output(const Arguments& arguments) {
   return *output;
 }
 
+// Values of these go from 0 to 1; and few programs show what is not 8-bit.
+std::vector<std::string> find_shown_layers(const RenderRequest& request) {
+  constexpr std::string_view kWithin01[] = {
+      "albedo", "rounded", "bevel_fac", "coverage_lo", "coverage_hi", "uncertified", "regions"};
+  if (request.output == "-") return {};
+  const PictureFormat format = picture_format(request.output);
+  if (format != PictureFormat::png && format != PictureFormat::jpeg) return {};
+  std::vector<std::string> shown;
+  std::ranges::copy_if(request.aovs, std::back_inserter(shown), [&](const std::string& aov) {
+    return std::ranges::find(kWithin01, aov) != std::end(kWithin01);
+  });
+  return shown;
+}
+
 void check_files(const RenderRequest& request) {
   std::vector<NamedFile> outputs;
   if (request.output != "-") {
@@ -157,6 +173,9 @@ void check_files(const RenderRequest& request) {
         outputs.push_back({"--aov " + aov, layer_file(request.output, aov)});
       }
     }
+  }
+  for (const std::string& layer : request.shown_layers) {
+    outputs.push_back({"--aov " + layer, shown_layer_file(request.output, layer)});
   }
   if (request.stats && *request.stats != "-") outputs.push_back({"--stats", *request.stats});
   if (request.checkpoint) outputs.push_back({"--checkpoint", *request.checkpoint});
@@ -182,6 +201,7 @@ RenderRequest make_render_request(const Arguments& arguments) {
   request.beam = parse_beam_settings(arguments, request.integrator);
   if (request.integrator == Integrator::beam) check_beam_options(arguments);
   request.aovs = parse_aovs(arguments, request.integrator);
+  request.shown_layers = find_shown_layers(request);
   request.stage = make_stage_options(arguments);
   request.stage.rounded = request.integrator != Integrator::beam;  // which sees meshes as they are
   request.samples = make_samples(arguments);

@@ -32,6 +32,7 @@ struct RenderRequest {
   std::uint32_t seed = 0;
   int threads = 0;
   std::vector<std::string> aovs;
+  std::vector<std::string> shown_layers;  // of them, those that are also PNGs beside the picture
 };
 
 std::unique_ptr<Renderer> make_renderer(Integrator integrator, const BeamSettings& beam = {});

@@ -23,13 +23,16 @@ struct EdgeCounts {
 // Of a solid made of others: of its description, before anything coincides or is empty.
 struct CsgReport {
   std::uint64_t primitives = 0;
+  std::uint64_t curved = 0;  // of them, those with a curved surface, which is exact
+  std::uint64_t flat_faces =
+      0;  // of the others: facets, where something round was described by them
   std::uint64_t operations = 0;
   std::uint64_t depth = 0;  // operations in one another
 };
 
 struct ObjectReport {
   std::string name;
-  std::optional<CsgReport> csg;  // set: exact surfaces; what follows up to the bounds says nothing
+  std::optional<CsgReport> csg;  // set: a solid; what follows up to the bounds says nothing
   std::uint64_t triangles = 0, vertices = 0;  // vertices after welding
   std::uint64_t shells = 0;                   // connected components
   EdgeCounts edges;

@@ -36,6 +36,8 @@ struct SaveOptions {
   int jpeg_quality = 92;
   // String attributes of an EXR file: what part of which render it holds.
   std::vector<std::pair<std::string, std::string>> attributes;
+  // Layers with values from 0 to 1 that are to be looked at: beside other formats than EXR also out.albedo.png.
+  std::vector<std::string> shown_layers;
 };
 
 // .png .jpg .exr .pfm by extension. Layers go into EXR files as channels "name.R", … and beside other formats as

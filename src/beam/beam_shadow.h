@@ -40,6 +40,8 @@ class ShadowLists {
 
 class ShadowLooker {
  public:
+  static constexpr std::size_t kMostJointLights = 4;
+
   // Surfaces for which light does nothing.
   using Unlit = std::function<bool(const LookNode&)>;
 
@@ -61,8 +63,6 @@ class ShadowLooker {
                   std::uint64_t& regions, const Unlit& unlit = {}) const;
 
  private:
-  static constexpr std::size_t kMostJointLights = 4;
-
   [[nodiscard]] std::vector<std::uint32_t> find_lit(const LookTree& tree, const Unlit& unlit) const;
   // Replaces `surfaces` by the ends below them.
   bool add_light(LookTree& tree, const Rect& rect, std::uint32_t light, std::uint32_t bit,

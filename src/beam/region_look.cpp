@@ -55,11 +55,7 @@ class Looker {
     const std::uint32_t positive = follow();
     assumptions_.pop_back();
     const bool joined = join(node, open, negative, positive);
-    // Below a sign that is rounding, smaller rectangles won't tell more.
-    const bool noise =
-        open.polynomial && is_noise(*open.polynomial, rect_) &&
-        std::ranges::any_of(tree_.nodes.begin() + node, tree_.nodes.end(),
-                            [](const LookNode& n) { return n.kind == LookNode::Kind::unknown; });
+    const bool noise = joined && is_rounding(node, open);
     if (!joined || noise) {
       tree_.nodes.resize(node + 1);
       window_.find(oracle, assumptions_);  // for its leaves
@@ -88,6 +84,18 @@ class Looker {
     joined.negative = negative;
     joined.positive = positive;
     return true;
+  }
+
+  // Is the sign at the node rounding, and something below it unknown? Smaller rectangles won't tell more. Nor do they
+  // where it is a sign of one surface: the eye lies in it, or in a cone's apex. Where two surfaces coincide, though,
+  // it is known that one of them is seen.
+  [[nodiscard]] bool is_rounding(std::uint32_t node, const OpenSign& open) const {
+    if (tree_.nodes[node].kind != LookNode::Kind::sign || !is_noise(*open.polynomial, rect_)) {
+      return false;
+    }
+    return open.key.of < SignKey::Of::plane_plane ||
+           std::ranges::any_of(tree_.nodes.begin() + node, tree_.nodes.end(),
+                               [](const LookNode& n) { return n.kind == LookNode::Kind::unknown; });
   }
 
   LookNode give_up() {

@@ -5,13 +5,22 @@
 #include <cmath>
 
 #include "base/check.h"
+#include "beam/beam_mirror.h"
+#include "beam/beam_shadow.h"
 
 namespace arris {
 namespace {
 
-// Convex; each clip adds at most one vertex.
+// Of signs on the way from the root of a tree to an end: the eye's, and below a surface those of the lights that are
+// looked at together, or below a mirror those of the mirrors that it shows one in another. No surface has both.
+constexpr std::size_t kMostSigns =
+    LookOptions{}.most_signs * (1 + std::max(ShadowLooker::kMostJointLights, kMostMirrors));
+
+// A rectangle, clipped once for each sign. Convex, so that a clip adds at most one vertex; but for rounding, which may
+// bend it where vertices coincide.
 struct Polygon {
-  static constexpr std::size_t kMost = 24;
+  static constexpr std::size_t kCorners = 4, kSlack = 8;
+  static constexpr std::size_t kMost = kCorners + kMostSigns + kSlack;
   std::array<Vec2d, kMost> points;
   std::size_t count = 0;
 

@@ -1,6 +1,8 @@
 #include "csg/csg_bounds.h"
 
 #include <algorithm>
+#include <optional>
+#include <variant>
 #include <vector>
 
 #include "csg/csg_expression.h"
@@ -21,6 +23,38 @@ Box3d csg_bounds(const CsgTree& tree) {
   return expression.bounds(used);
 }
 
+namespace {
+
+// Of a primitive that has no others; nothing: it has a curved surface.
+struct FlatFaces {
+  using Count = std::optional<std::uint64_t>;
+
+  Count operator()(const CsgBox&) const { return 6; }
+  Count operator()(const CsgHalfSpace&) const { return 1; }
+  Count operator()(const CsgPolyhedron& polyhedron) const { return polyhedron.faces.size(); }
+  Count operator()(const CsgMesh& mesh) const { return mesh.triangles.size(); }
+  Count operator()(const CsgPrism& prism) const {
+    if (prism.scale_high.x != prism.scale_high.y) return std::nullopt;
+    std::uint64_t faces = prism.scale_high.x > 0 ? 2 : 1;
+    for (const std::vector<Vec2d>& outline : prism.region.outlines) faces += outline.size();
+    return faces;
+  }
+  Count operator()(const CsgSphere&) const { return std::nullopt; }
+  Count operator()(const CsgCone&) const { return std::nullopt; }
+  Count operator()(const CsgTorus&) const { return std::nullopt; }
+  Count operator()(const CsgRevolution&) const { return std::nullopt; }
+  Count operator()(const CsgRounded&) const { return std::nullopt; }
+};
+
+void add_leaf(const CsgPrimitive& primitive, CsgCounts& counts) {
+  const std::optional<std::uint64_t> faces = std::visit(FlatFaces{}, primitive);
+  ++counts.primitives;
+  counts.curved += faces ? 0 : 1;
+  counts.flat_faces += faces.value_or(0);
+}
+
+}  // namespace
+
 // Children have greater numbers than their parents: one pass down for what is used, one up for the depth.
 CsgCounts count_csg(const CsgTree& tree) {
   CsgCounts counts;
@@ -30,7 +64,11 @@ CsgCounts count_csg(const CsgTree& tree) {
   for (std::size_t i = 0; i < count; ++i) {
     const CsgNode& node = tree.nodes[i];
     if (!used[i]) continue;
-    (node.leaf != CsgNode::kInner ? counts.primitives : counts.operations) += 1;
+    if (node.leaf != CsgNode::kInner) {
+      add_leaf(tree.leaves[node.leaf].primitive, counts);
+    } else {
+      ++counts.operations;
+    }
     for (const std::uint32_t child : node.children) {
       if (child < count) used[child] = true;
     }

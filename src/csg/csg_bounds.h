@@ -14,6 +14,8 @@ Box3d csg_bounds(const CsgTree& tree);
 
 struct CsgCounts {
   std::uint64_t primitives = 0;  // leaves that nodes use
+  std::uint64_t curved = 0;      // of them, those with a curved surface
+  std::uint64_t flat_faces = 0;  // of the others
   std::uint64_t operations = 0;  // inner nodes
   std::uint64_t depth = 0;       // operations in one another
 };

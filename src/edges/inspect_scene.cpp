@@ -53,7 +53,8 @@ ObjectReport inspect_csg(const Scene& scene, const Object& object) {
   const CsgCounts counts = count_csg(tree);
   ObjectReport report;
   report.name = object.name;
-  report.csg = CsgReport{counts.primitives, counts.operations, counts.depth};
+  report.csg = CsgReport{counts.primitives, counts.curved, counts.flat_faces, counts.operations,
+                         counts.depth};
   report.closed = true;
   report.bounds_min = Vec3d(kInfinity);
   report.bounds_max = Vec3d(-kInfinity);

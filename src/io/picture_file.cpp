@@ -147,15 +147,24 @@ std::filesystem::path layer_file(const std::filesystem::path& path, const std::s
   return file.replace_extension("." + layer + ".pfm");
 }
 
+std::filesystem::path shown_layer_file(const std::filesystem::path& path,
+                                       const std::string& layer) {
+  return layer_file(path, layer).replace_extension(".png");
+}
+
 void save_picture(const Picture& picture, const std::filesystem::path& path,
                   const SaveOptions& options) {
   const PictureFormat format = picture_format(path);
   NewFiles files;
   files.add(path, encode_picture(picture, format, options));
-  if (format != PictureFormat::exr) {
-    for (const Layer& layer : picture.layers) {
-      files.add(layer_file(path, layer.name), encode_pfm(layer.image));
-    }
+  SaveOptions shown;
+  shown.tone_map = false;
+  for (const Layer& layer : picture.layers) {
+    if (format == PictureFormat::exr) break;
+    files.add(layer_file(path, layer.name), encode_pfm(layer.image));
+    const std::vector<std::string>& names = options.shown_layers;
+    if (std::ranges::find(names, layer.name) == names.end()) continue;
+    files.add(shown_layer_file(path, layer.name), encode_png(display_samples(layer.image, shown)));
   }
   files.appear();
 }

@@ -34,6 +34,8 @@ PictureFormat picture_format(const std::filesystem::path& path);
 
 // Where save_picture() puts a layer beside a picture whose format has none.
 std::filesystem::path layer_file(const std::filesystem::path& path, const std::string& layer);
+// And where SaveOptions::shown_layers.
+std::filesystem::path shown_layer_file(const std::filesystem::path& path, const std::string& layer);
 
 // Empty if the format takes pictures of this size; else what is wrong and what to do.
 std::string problem_with_size(PictureFormat format, int width_px, int height_px);

@@ -1,10 +1,13 @@
 #include "render/staging.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
 #include "render/camera.h"
 #include "render/ground_frame.h"
+#include "scene/limits.h"
 #include "scene/material_presets.h"
 #include "scene/scene_bounds.h"
 
@@ -134,6 +137,44 @@ void apply_camera(Scene& scene, const CameraOptions& options) {
   if (!options.up && along_up) camera.up = make_ground_frame(camera.up).north;
 }
 
+double reach_of(Vec3d p) {
+  return std::max({std::abs(p.x), std::abs(p.y), std::abs(p.z)});
+}
+
+// How far out what a model gets lies; 0: it gets none.
+struct AddedReach {
+  double camera = 0, ground = 0;
+};
+
+AddedReach added_reach(const Scene& scene, bool framed, bool has_ground) {
+  AddedReach reach;
+  if (framed) reach.camera = reach_of(scene.camera->position);
+  if (!has_ground) return reach;
+  for (const Vec3f& p : scene.meshes.back().positions) {
+    reach.ground = std::max(reach.ground, reach_of(Vec3d(p)));
+  }
+  return reach;
+}
+
+// It is all in proportion to the model.
+std::string problem_with(const AddedReach& added, const Scene& scene) {
+  const double reach = std::max(added.camera, added.ground);
+  if (reach <= kMaxCoordinate) return "";
+  double model = 0;
+  const std::size_t objects = scene.objects.size() - (added.ground > 0 ? 1 : 0);
+  for (std::size_t i = 0; i < objects; ++i) {
+    const Bounds bounds = world_bounds(scene, scene.objects[i]);
+    if (!bounds.is_empty())
+      model = std::max({model, reach_of(bounds.lower), reach_of(bounds.upper)});
+  }
+  const double scale = std::floor(kMaxCoordinate / reach * 1000) / 1000;
+  return fmt::format(
+      "is too large to be framed: it reaches out to {:.4g}, its {} would to {:.4g}, and "
+      "coordinates can be up to {:g}; scale it to {:g} of its size or less, or use {}--ground off",
+      model, added.camera > added.ground ? "camera" : "ground", reach, kMaxCoordinate, scale,
+      added.camera > kMaxCoordinate ? "--camera-position and " : "");
+}
+
 }  // namespace
 
 Environment make_environment(Lighting lighting, Vec3d up) {
@@ -167,6 +208,8 @@ StagingReport stage_model(Scene& scene, const StageOptions& options) {
   apply_camera(scene, options.camera);
   StagingReport report;
   if (options.ground.value_or(is_model && !has_camera)) report.ground_triangles = add_ground(scene);
+  const bool framed = !has_camera && !options.camera.position;
+  report.problem = problem_with(added_reach(scene, framed, report.ground_triangles > 0), scene);
   return report;
 }
 

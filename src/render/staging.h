@@ -7,6 +7,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <string>
 
 #include "arris/scene.h"
 
@@ -33,6 +34,8 @@ struct StageOptions {
 
 struct StagingReport {
   std::uint64_t ground_triangles = 0;  // of all that the scene has now
+  // Why there is no room for the camera or the ground that the model gets, with a remedy; empty: there is.
+  std::string problem;
 };
 
 StagingReport stage_model(Scene& scene, const StageOptions& options);

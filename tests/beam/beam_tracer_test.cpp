@@ -88,6 +88,30 @@ TEST(beam_tracer, no_surface_is_missed_and_samples_lie_inside_the_bounds) {
   }
 }
 
+// All that its quadric tells an eye in a cone's apex is zero: no pixel is certified, and a ray stands for each.
+TEST(beam_tracer, an_eye_in_the_apex_of_a_cone_sees_what_rays_see) {
+  for (const bool is_hole : {false, true}) {
+    const CsgCone cone{0, 5, 0, 3};
+    BeamScene scene;
+    scene.width = scene.height = 48;
+    scene.add(is_hole ? flat_tree(CsgOperation::subtract,
+                                  {{CsgBox{Vec3d(-6), Vec3d(4)}, {}, {}}, {cone, {}, {}}})
+                      : one_leaf(cone));
+    scene.eye = look_at({0, 0, 0}, {0.5, 0, 1}, 80, 48, 48);
+    expect_sound(scene, is_hole ? "hole" : "cone", 4);
+    const BeamTracer tracer(scene.placed, scene.eye, 48, 48);
+    for (const BeamTile& tile : tracer.make_tiles()) {
+      tracer.trace_tile(tile, [&](const BeamPixel& pixel) {
+        const SeenKey truth = key_at(scene, pixel.x + 0.5, pixel.y + 0.5);
+        for (const PixelSurface& s : pixel.surfaces) {
+          EXPECT_EQ(s.estimate, key_of(s.seen) == truth ? 1 : 0) << pixel.x << ", " << pixel.y;
+        }
+        EXPECT_FALSE(pixel.certified);
+      });
+    }
+  }
+}
+
 CsgLeaf ball(Vec3d at, double radius) {
   return {CsgSphere{radius}, {{}, at}, {}};
 }

@@ -137,6 +137,50 @@ TEST(region_look, ends_are_what_rays_see_of_convex_leaves) {
   EXPECT_LT(tally.unknown, tally.points() / 4);
 }
 
+// A cone by itself, with a bite out of it, or as a hole, perhaps before another one that begins just behind its apex.
+CsgTree random_cone_tree(CsgRandom& random, int i, const CsgCone& cone) {
+  if (i % 4 == 0) return one_leaf(cone);
+  CsgLeaf other{random_convex(random), random_placement(random, 1), {}};
+  if (i % 4 == 1) return flat_tree(CsgOperation::subtract, {{cone, {}, {}}, other});
+  if (i % 4 == 2) {
+    const double gap = uniform(random, 0.01, 0.2);
+    other = {CsgBox{{-2, -2, -2}, {2, 2, -gap}}, {}, {}};
+  }
+  const CsgBox block{Vec3d(-3), Vec3d(3)};
+  return flat_tree(CsgOperation::subtract, {{block, {}, {}}, {cone, {}, {}}, other});
+}
+
+// Along its walls a cone's curvature changes its sign, and rays that run in its opening never leave it.
+TEST(region_look, ends_are_what_rays_see_along_the_walls_of_cones) {
+  CsgRandom random(6);
+  Tally tally;
+  for (int i = 0; i < 300; ++i) {
+    // The apex is at the origin.
+    const double spread = uniform(random, 0.2, 1.5);  // radius by height
+    const double low = i % 3 != 0 ? 0 : uniform(random, 0, 1), high = uniform(random, 1, 3);
+    const CsgCone cone{low, high, spread * low, spread * high};
+    BeamScene scene;
+    scene.width = scene.height = 8;
+    scene.add(random_cone_tree(random, i, cone));
+    Vec3d eye = random_vector(random, 1);
+    if (random() % 4 != 0) {  // in the cone
+      eye.z = uniform(random, low, high);
+      const double angle = uniform(random, 0, 2 * kPi);
+      const double radius = uniform(random, 0, spread * eye.z);
+      eye = {radius * std::cos(angle), radius * std::sin(angle), eye.z};
+    }
+    const double angle = uniform(random, 0, 2 * kPi);
+    Vec3d wall{spread * std::cos(angle), spread * std::sin(angle), 1};
+    if (random() % 2 == 0) wall = -wall;
+    scene.eye = look_at(eye, eye + wall + random_vector(random, 0.1), uniform(random, 5, 60), 8, 8);
+    look_around(scene, random, tally);
+    ASSERT_FALSE(HasFatalFailure()) << i;
+  }
+  EXPECT_GT(tally.surfaces, tally.points() / 3);
+  EXPECT_GT(tally.by_signs, tally.points() / 30);
+  EXPECT_LT(tally.unknown, tally.points() / 3);
+}
+
 TEST(region_look, ends_are_what_rays_see_of_every_kind_of_leaf) {
   CsgRandom random(2);
   Tally tally;

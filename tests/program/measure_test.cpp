@@ -159,6 +159,27 @@ TEST(Info, prints_a_report_to_read) {
   EXPECT_THAT(run.out, HasSubstr("12 edges, 8 corners"));
 }
 
+TEST(Info, tells_curved_solids_from_faceted_ones) {
+  const Workplace place;
+  test::write_text(place / "exact.csg", "sphere(r = 1);\n");
+  test::write_text(place / "mixed.csg",
+                   "difference() { cube(size = 2); cylinder(h = 3, r = 1); }\n");
+  // Of unlike balls: cut into facets.
+  test::write_text(
+      place / "hull.csg",
+      "hull() { sphere(r = 1); multmatrix([[1,0,0,5],[0,1,0,0],[0,0,2,0],[0,0,0,1]]) { "
+      "sphere(r = 1); } }\n");
+  EXPECT_THAT(place.arris("info exact.csg").out, HasSubstr("1 curved, which is exact\n"));
+  EXPECT_THAT(place.arris("info mixed.csg").out,
+              HasSubstr("1 curved, which is exact, and 1 of 6 flat faces\n"));
+  const std::string hull = place.arris("info hull.csg").out;
+  EXPECT_THAT(hull, testing::ContainsRegex("surfaces    1 of [0-9]+ flat faces\n"));
+  EXPECT_THAT(hull, testing::Not(HasSubstr("exact")));
+  const json mixed = json::parse(place.arris("info mixed.csg --json").out)["objects"][0]["csg"];
+  EXPECT_EQ(mixed["curved"], 1);
+  EXPECT_EQ(mixed["flat_faces"], 6);
+}
+
 TEST(Info, says_none_where_rounding_is_off) {
   EXPECT_THAT(Workplace().arris("info cube.stl --round none").out, HasSubstr("rounding    none"));
 }

@@ -79,6 +79,52 @@ TEST(Render, layers_are_part_of_exr_and_beside_png) {
   EXPECT_GT(load_picture(place / "b.depth.pfm").color.at(20, 15, 0), 0.0F);
 }
 
+TEST(Render, layers_beside_png_can_be_looked_at) {
+  const Workplace place;
+  const std::string render = std::string("render cube.stl") + kSmall + "--aov albedo,depth ";
+  ASSERT_EQ(place.arris(render + "-o a.jpg").code, 0);
+  const Image values = load_picture(place / "a.albedo.pfm").color;
+  const Image shown = load_picture(place / "a.albedo.png").color;
+  EXPECT_GT(values.at(20, 15, 0), 0.1F);
+  EXPECT_NEAR(shown.at(20, 15, 0), values.at(20, 15, 0), 0.01);
+  EXPECT_FALSE(std::filesystem::exists(place / "a.depth.png"));
+  ASSERT_EQ(place.arris(render + "-o b.pfm").code, 0);
+  EXPECT_FALSE(std::filesystem::exists(place / "b.albedo.png"));
+}
+
+TEST(Render, says_how_beams_went_and_which_option_does_nothing) {
+  const Workplace place;
+  const std::string beam = " --integrator beam --size 40x30 --spp 1 -o a.png";
+  const std::string plain = place.arris("render cube.stl" + beam).err;
+  EXPECT_THAT(plain, testing::ContainsRegex("a.png: 40 x 30 pixels, [0-9]+ regions, 0 uncertified "
+                                            "pixels, "));
+  EXPECT_THAT(plain, testing::Not(HasSubstr("sample")));
+  EXPECT_THAT(plain, testing::Not(HasSubstr("--light-beams")));
+  const std::string option = " --light-beams 2";
+  EXPECT_THAT(place.arris("render cube.stl" + beam + option).err,
+              HasSubstr("--light-beams changes nothing: there are no area lights\n"));
+  test::write_text(place / "lit.toml",
+                   "[[object]]\nfile = \"cube.stl\"\n[[light]]\ntype = \"area\"\n"
+                   "position = [1, -2, 6]\ntarget = [1, 1, 1]\nsize = [1, 1]\nradiance = 6\n");
+  const Outcome lit = place.arris("render lit.toml" + beam + option);
+  EXPECT_EQ(lit.code, 0) << lit.err;
+  EXPECT_THAT(lit.err, testing::Not(HasSubstr("--light-beams")));
+}
+
+TEST(Render, a_model_too_large_to_be_framed_is_an_error_that_names_it_its_size_and_a_remedy) {
+  const Workplace place;
+  test::write_text(place / "big.csg", "cube(size = [500000000, 500000000, 500000000]);\n");
+  const Outcome framed = place.arris(std::string("render big.csg -o a.png") + kSmall);
+  EXPECT_EQ(framed.code, 2);
+  EXPECT_THAT(
+      framed.err,
+      testing::MatchesRegex(
+          "arris: big.csg: is too large to be framed: it reaches out to 5e.08, its ground "
+          "would to 1[.0-9]*e.10, and coordinates can be up to 1e.09; scale it to 0.09[0-9]* "
+          "of its size or less, or use --ground off\n"));
+  EXPECT_EQ(place.arris(std::string("render big.csg -o a.png --ground off") + kSmall).code, 0);
+}
+
 TEST(Render, bytes_do_not_depend_on_the_number_of_threads) {
   const Workplace place;
   for (const char* name : {".png", ".exr"}) {
