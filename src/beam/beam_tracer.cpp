@@ -4,10 +4,14 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <map>
+#include <set>
 #include <unordered_map>
+#include <utility>
 
 #include "base/hash.h"
 #include "base/parallel_for.h"
+#include "beam/aimed_points.h"
 #include "beam/ray_sight.h"
 
 namespace arris {
@@ -19,6 +23,11 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr int kCloserLooks = 4;
 // As long as that leaves at most this part of what was open.
 constexpr double kGain = 0.7;
+
+// Rays that a pixel aims at what was found in it and no ray has met.
+constexpr int kAimedRays = 48;
+// Of the regions that a leaf may be in, so many have a ray aimed at the middle of its part.
+constexpr std::size_t kAimedRegions = 2;
 
 }  // namespace
 
@@ -53,10 +62,11 @@ class BeamTracer::Tracer {
     } else if (rect.width() > 1) {
       for (const Rect& part : quarters_of(rect)) visit(part, parts, next_end);
     } else {
-      surfaces_.clear();
+      clear_pixel();
       smallest_part_ = 1;
       pixel_rays_ = 0;
       for (const Rect& part : quarters_of(rect)) visit_part(part, parts, next_end);
+      add_forced_samples(parts);
       finish_pixel(rect, {rect.x0, rect.y0, rect.x0 + smallest_part_, rect.y0 + smallest_part_});
     }
   }
@@ -78,7 +88,7 @@ class BeamTracer::Tracer {
     const bool complete = (tree.complete || smallest) && add_light(tree, rect);
     if (complete || smallest) {
       smallest_part_ = std::min(smallest_part_, rect.width());
-      add_ends(tree, areas_of(tree, rect), parts);
+      add_ends(tree, areas_of(tree, rect), rect, parts);
       add_lit_shares(tree, rect);
       return;
     }
@@ -117,16 +127,22 @@ class BeamTracer::Tracer {
     AreaOptions options;
     double before = kInfinity;
     for (int i = 0; i <= kCloserLooks; ++i) {
-      surfaces_.clear();
-      add_ends(tree, areas_of(tree, pixel, options), parts);
+      clear_pixel();
+      add_ends(tree, areas_of(tree, pixel, options), pixel, parts);
       const double open = open_area();
       if (tree.hopeless || is_certified() || open > kGain * before) break;
       before = open;
       options.tolerance /= 4;
       options.least_side /= 4;
     }
+    add_forced_samples(parts);
     add_lit_shares(tree, pixel);
     finish_pixel(pixel, region);
+  }
+
+  void clear_pixel() {
+    surfaces_.clear();
+    unresolved_.clear();
   }
 
   [[nodiscard]] double open_area() const {
@@ -145,12 +161,12 @@ class BeamTracer::Tracer {
     });
   }
 
-  void add_ends(const LookTree& tree, const std::vector<EndArea>& ends,
+  void add_ends(const LookTree& tree, const std::vector<EndArea>& ends, const Rect& rect,
                 const std::vector<BeamPart>& parts) {
     for (const EndArea& end : ends) {
       const LookNode& node = tree.nodes[end.node];
       if (node.kind == LookNode::Kind::unknown) {
-        add_unknown(tree, node, end, parts);
+        add_unknown(tree, node, end, rect, parts);
         continue;
       }
       PixelSurface surface;
@@ -165,10 +181,6 @@ class BeamTracer::Tracer {
       surface.mirror_open = node.mirror_open;
       surface.light_open = node.light_open;
       surface.mirror_number = node.mirrors;
-      if (!shared_.shadows_.is_joint()) {
-        surface.lit_shares.resize(shared_.shadows_.light_count());
-        for (LitShare& share : surface.lit_shares) share.open = end.estimate;
-      }
       const bool is_curved = node.kind == LookNode::Kind::surface && !node.seen.surface.is_plane();
       if (is_curved && end.lo < 1) surface.samples = end.samples;
       add(surface);
@@ -216,8 +228,8 @@ class BeamTracer::Tracer {
     }
   }
 
-  // Anything in the window may be seen, or nothing; a ray says what to take for it.
-  void add_unknown(const LookTree& tree, const LookNode& node, const EndArea& end,
+  // Anything in the window may be seen, or nothing; a ray says what to take for it, until others are aimed.
+  void add_unknown(const LookTree& tree, const LookNode& node, const EndArea& end, const Rect& rect,
                    const std::vector<BeamPart>& parts) {
     PixelSurface open;
     open.hi = end.hi;
@@ -225,21 +237,34 @@ class BeamTracer::Tracer {
     open.sample_weight = 0;
     add(open);
     for (std::uint32_t i = 0; i < node.count; ++i) {
-      open.seen = tree.candidates[node.first + i];
-      add(open);
+      add_candidate(tree.candidates[node.first + i], end, rect);
     }
     if (node.count == 0) {
-      for (const BeamPart& part : parts) add_all_faces(part, open);
+      for (const BeamPart& part : parts) add_all_faces(part, end, rect);
     }
-    ++stats_.rays;
-    ++pixel_rays_;
-    open.seen = seen_by_ray(parts, end.sample);
-    open.hi = 0;
-    open.estimate = open.sample_weight = end.estimate;
+    const std::optional<SeenSurface> seen = seen_by_ray(parts, end.sample);
+    add_estimate(seen, end.sample, end.estimate);
+    Unresolved& region = unresolved_.emplace_back();
+    region = {rect, seen, end.estimate, {}};
+    for (std::uint32_t i = 0; i < node.count; ++i) {
+      const SeenSurface& candidate = tree.candidates[node.first + i];
+      region.leaves.push_back({candidate.solid, candidate.leaf});
+    }
+    std::ranges::sort(region.leaves);
+    region.leaves.erase(std::ranges::unique(region.leaves).begin(), region.leaves.end());
+  }
+
+  // It is seen nowhere but in its leaf's window.
+  void add_candidate(const SeenSurface& seen, const EndArea& end, const Rect& rect) {
+    PixelSurface open;
+    open.seen = seen;
+    open.hi = std::min(end.hi, part_in_window(shared_.view_, {seen.solid, seen.leaf}, rect).area());
+    open.sample = end.sample;
+    open.sample_weight = 0;
     add(open);
   }
 
-  void add_all_faces(const BeamPart& part, PixelSurface open) {
+  void add_all_faces(const BeamPart& part, const EndArea& end, const Rect& rect) {
     for (const std::uint32_t leaf : part.expression.leaves()) {
       const BeamShape& shape = *shared_.solids_[part.solid].shape;
       const ConvexLeaf* convex = shape.convex(leaf);
@@ -248,15 +273,118 @@ class BeamTracer::Tracer {
       for (std::uint32_t face = 0; face < faces; ++face) {
         for (const bool entering : {true, false}) {
           const std::uint32_t number = shape.is_whole(leaf) ? kAnyFace : face;
-          open.seen = SeenSurface{part.solid, leaf, number, {}, entering};
-          add(open);
+          add_candidate({part.solid, leaf, number, {}, entering}, end, rect);
         }
       }
     }
   }
 
-  [[nodiscard]] std::optional<SeenSurface> seen_by_ray(const std::vector<BeamPart>& parts,
-                                                       Vec2d at) const {
+  void add_estimate(const std::optional<SeenSurface>& seen, Vec2d sample, double estimate) {
+    PixelSurface surface;
+    surface.seen = seen;
+    surface.sample = sample;
+    surface.estimate = surface.sample_weight = estimate;
+    add(surface);
+  }
+
+  // What was found shows: rays are aimed at the leaves that may be seen in regions that stayed unknown and that no
+  // ray has met. Those they meet take a part of what the region's own ray stood for.
+  void add_forced_samples(const std::vector<BeamPart>& parts) {
+    if (unresolved_.empty()) return;
+    std::set<LeafName> done;  // met, or tried
+    for (const PixelSurface& s : surfaces_) {
+      if (s.seen && s.estimate > 0) done.insert({s.seen->solid, s.seen->leaf});
+    }
+    int left = kAimedRays;
+    for (std::size_t i = 0; i < surfaces_.size() && left > 0; ++i) {  // it grows
+      const PixelSurface& s = surfaces_[i];
+      if (!s.seen || s.mirror_number != 0 || !(s.hi > 0)) continue;
+      const LeafPlace leaf{s.seen->solid, s.seen->leaf};
+      if (!done.insert({leaf.solid, leaf.leaf}).second) continue;
+      const auto try_aims = [&](const std::vector<Aim>& aims) {
+        for (const Aim& aim : aims) {
+          if (left-- <= 0) return true;
+          const std::optional<SeenSurface> seen = force(aim, parts);
+          if (!seen) continue;
+          done.insert({seen->solid, seen->leaf});
+          if (seen->solid == leaf.solid && seen->leaf == leaf.leaf) return true;
+        }
+        return false;
+      };
+      if (!try_aims(aims_at(leaf))) try_aims(aims_at_contacts(leaf, left));
+    }
+  }
+
+  struct Aim {
+    std::size_t region = 0;  // of unresolved_
+    Vec2d at;
+  };
+  static bool holds(const Rect& rect, Vec2d p) {
+    return p.x >= rect.x0 && p.x <= rect.x1 && p.y >= rect.y0 && p.y <= rect.y1;
+  }
+  [[nodiscard]] std::vector<Aim> aims_at(const LeafPlace& place) const {
+    std::vector<Aim> aims;
+    const std::vector<Vec2d> points =
+        aimed_points(shared_.eye_, shared_.solids_[place.solid], place.leaf);
+    std::vector<std::pair<double, Aim>> widest;  // by minus the area
+    for (std::size_t i = 0; i < unresolved_.size(); ++i) {
+      const Rect part = part_in_window(shared_.view_, place, unresolved_[i].rect);
+      if (!(part.area() > 0)) continue;
+      for (const Vec2d& p : points) {
+        if (holds(part, p)) aims.push_back({i, p});
+      }
+      widest.push_back({-part.area(), {i, {part.middle_x(), part.middle_y()}}});
+    }
+    std::ranges::stable_sort(widest, {}, &std::pair<double, Aim>::first);
+    widest.resize(std::min(widest.size(), kAimedRegions));
+    for (const auto& [area, aim] : widest) aims.push_back(aim);
+    return aims;
+  }
+
+  // Where the leaf changes its order with another that is unknown in one region with it. Each try costs a ray.
+  [[nodiscard]] std::vector<Aim> aims_at_contacts(const LeafPlace& place, int& left) const {
+    std::map<LeafName, std::vector<std::size_t>> regions;  // by the other leaf
+    for (std::size_t i = 0; i < unresolved_.size(); ++i) {
+      const std::vector<LeafName>& leaves = unresolved_[i].leaves;
+      if (!std::ranges::binary_search(leaves, LeafName{place.solid, place.leaf})) continue;
+      for (const LeafName& leaf : leaves) regions[leaf].push_back(i);
+    }
+    std::vector<Aim> aims;
+    for (const auto& [leaf, of_leaf] : regions) {
+      const LeafPlace other{leaf.first, leaf.second};
+      if (leaf == LeafName{place.solid, place.leaf} || left-- <= 0) continue;
+      const Rect& start = unresolved_[of_leaf[of_leaf.size() / 2]].rect;
+      for (const Vec2d& p :
+           points_of_contact(shared_.solids_, shared_.eye_, {place, other}, start)) {
+        const auto at = std::ranges::find_if(
+            of_leaf, [&](std::size_t i) { return holds(unresolved_[i].rect, p); });
+        if (at != of_leaf.end()) aims.push_back({*at, p});
+      }
+    }
+    return aims;
+  }
+
+  // A surface that had no share has half of what its leaf may fill of the region from now on, if the ray meets it.
+  std::optional<SeenSurface> force(const Aim& aim, const std::vector<BeamPart>& parts) {
+    Unresolved& region = unresolved_[aim.region];
+    const std::optional<SeenSurface> seen = seen_by_ray(parts, aim.at);
+    if (!seen) return seen;
+    PixelSurface surface;
+    surface.seen = seen;
+    if (entry_of(surface).estimate > 0) return seen;
+    const Rect part = part_in_window(shared_.view_, {seen->solid, seen->leaf}, region.rect);
+    const double share = std::min(part.area(), region.left) / 2;
+    region.left -= share;
+    add_estimate(seen, aim.at, share);
+    surface.seen = region.seen;
+    surface.estimate = -share;
+    add(surface);
+    return seen;
+  }
+
+  std::optional<SeenSurface> seen_by_ray(const std::vector<BeamPart>& parts, Vec2d at) {
+    ++stats_.rays;
+    ++pixel_rays_;
     const std::optional<RaySight> sight =
         see(shared_.solids_, parts, ray_through(shared_.eye_, at));
     return sight ? std::optional(sight->seen) : std::nullopt;
@@ -312,9 +440,9 @@ class BeamTracer::Tracer {
     known.lo += surface.lo;
     known.hi += surface.hi;
     known.estimate += surface.estimate;
-    known.lit_shares.resize(surface.lit_shares.size());
-    for (std::size_t i = 0; i < known.lit_shares.size(); ++i) {
-      known.lit_shares[i].open += surface.lit_shares[i].open;
+    if (!shared_.shadows_.is_joint()) {
+      known.lit_shares.resize(shared_.shadows_.light_count());
+      for (LitShare& share : known.lit_shares) share.open += surface.estimate;
     }
     known.samples.insert(known.samples.end(), surface.samples.begin(), surface.samples.end());
     if (surface.sample_weight > known.sample_weight) {
@@ -349,6 +477,15 @@ class BeamTracer::Tracer {
     sink_(out);
   }
 
+  using LeafName = std::pair<std::uint32_t, std::uint32_t>;
+  // A region in which something stayed unknown.
+  struct Unresolved {
+    Rect rect;
+    std::optional<SeenSurface> seen;  // by the ray that stands in
+    double left = 0;                  // of what that stands for
+    std::vector<LeafName> leaves;     // that are put in order there, ascending; none: too many
+  };
+
   const BeamTracer& shared_;
   const std::function<void(const BeamPixel&)>& sink_;
   ShadowLists lists_;
@@ -356,6 +493,7 @@ class BeamTracer::Tracer {
   double smallest_part_ = 1;
   std::uint32_t pixel_rays_ = 0;  // that the pixel has taken so far
   std::vector<PixelSurface> surfaces_;
+  std::vector<Unresolved> unresolved_;                     // of the pixel
   std::unordered_map<Key, std::uint32_t, KeyHash> index_;  // of surfaces_, where they are many
   BeamStats stats_;
 };
