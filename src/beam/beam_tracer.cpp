@@ -12,6 +12,7 @@
 #include "base/hash.h"
 #include "base/parallel_for.h"
 #include "beam/aimed_points.h"
+#include "beam/lit_regions.h"
 #include "beam/ray_sight.h"
 
 namespace arris {
@@ -55,6 +56,10 @@ class BeamTracer::Tracer {
     LookTree tree = look(shared_.view_, list, rect, depth_end);
     const double next_end = std::min(depth_end, tree.depth_end);
     if ((tree.complete || tree.hopeless) && add_light(tree, rect)) {
+      if (!shared_.shadows_.is_joint()) {
+        lit_regions_.look(shared_.shadows_, tree, rect, lists_, stats_.regions,
+                          [&](const LookNode& node) { return is_unlit(node); });
+      }
       for (double y = rect.y0; y < rect.y1; ++y) {
         for (double x = rect.x0; x < rect.x1; ++x)
           add_pixel(tree, {x, y, x + 1, y + 1}, rect, parts);
@@ -88,7 +93,7 @@ class BeamTracer::Tracer {
     const bool complete = (tree.complete || smallest) && add_light(tree, rect);
     if (complete || smallest) {
       smallest_part_ = std::min(smallest_part_, rect.width());
-      add_ends(tree, areas_of(tree, rect), rect, parts);
+      add_ends(tree, areas_of(tree, rect, {.with_samples = any_curved(tree)}), rect, parts);
       add_lit_shares(tree, rect);
       return;
     }
@@ -114,17 +119,18 @@ class BeamTracer::Tracer {
 
   // Shadows, and what is seen in mirrors.
   bool add_light(LookTree& tree, const Rect& rect) {
-    const MirrorLooker& mirrors = shared_.mirrors_;
-    const bool shadows =
-        shared_.shadows_.add_shadows(tree, rect, lists_, stats_.regions,
-                                     [&](const LookNode& node) { return mirrors.is_mirror(node); });
-    return mirrors.add_mirrors(tree, rect, mirror_lists_, stats_.regions) && shadows;
+    const bool shadows = shared_.shadows_.add_shadows(
+        tree, rect, lists_, stats_.regions, [&](const LookNode& node) { return is_unlit(node); });
+    return shared_.mirrors_.add_mirrors(tree, rect, mirror_lists_, stats_.regions) && shadows;
+  }
+  [[nodiscard]] bool is_unlit(const LookNode& node) const {
+    return shared_.mirrors_.is_mirror(node);
   }
 
   void add_pixel(const LookTree& tree, const Rect& pixel, const Rect& region,
                  const std::vector<BeamPart>& parts) {
     if (pixel.x0 >= shared_.width_px_ || pixel.y0 >= shared_.height_px_) return;
-    AreaOptions options;
+    AreaOptions options{.with_samples = any_curved(tree)};
     double before = kInfinity;
     for (int i = 0; i <= kCloserLooks; ++i) {
       clear_pixel();
@@ -136,13 +142,20 @@ class BeamTracer::Tracer {
       options.least_side /= 4;
     }
     add_forced_samples(parts);
-    add_lit_shares(tree, pixel);
+    add_lit_shares_of_pixel(tree, pixel);
     finish_pixel(pixel, region);
   }
 
   void clear_pixel() {
     surfaces_.clear();
     unresolved_.clear();
+  }
+
+  static bool is_curved(const LookNode& node) {
+    return node.kind == LookNode::Kind::surface && !node.seen.surface.is_plane();
+  }
+  static bool any_curved(const LookTree& tree) {
+    return std::ranges::any_of(tree.nodes, is_curved);
   }
 
   [[nodiscard]] double open_area() const {
@@ -181,13 +194,33 @@ class BeamTracer::Tracer {
       surface.mirror_open = node.mirror_open;
       surface.light_open = node.light_open;
       surface.mirror_number = node.mirrors;
-      const bool is_curved = node.kind == LookNode::Kind::surface && !node.seen.surface.is_plane();
-      if (is_curved && end.lo < 1) surface.samples = end.samples;
+      if (is_curved(node) && end.lo < 1) surface.samples = end.samples;
       add(surface);
     }
   }
 
-  // How much of each surface each light reaches, where that is asked for one by one.
+  // How much of each surface each light reaches, where that is asked for one by one: of a pixel whose region was looked
+  // at from the lights,
+  void add_lit_shares_of_pixel(const LookTree& tree, const Rect& pixel) {
+    if (shared_.shadows_.is_joint()) return;
+    for (std::uint32_t light = 0; light < shared_.shadows_.light_count(); ++light) {
+      const LitTree& lit = lit_regions_.tree_of(light, pixel);
+      if (!lit.complete) {
+        for (const Rect& part : quarters_of(pixel)) add_lit_share(tree, part, light);
+        continue;
+      }
+      const std::vector<EndArea> ends = areas_of(lit.tree, pixel, {.with_samples = false});
+      double open = 0;
+      for (const EndArea& end : ends) open += end.hi - end.lo;
+      // Signs of a large region may be many that cross.
+      if (open > shared_.options_.tolerance && lit.rect.width() > 1) {
+        add_lit_share(tree, pixel, light);
+      } else {
+        add_lit_ends(lit.tree, ends, light);
+      }
+    }
+  }
+  // and of a part of a pixel.
   void add_lit_shares(const LookTree& tree, const Rect& rect) {
     if (shared_.shadows_.is_joint()) return;
     for (std::uint32_t light = 0; light < shared_.shadows_.light_count(); ++light) {
@@ -196,15 +229,17 @@ class BeamTracer::Tracer {
   }
   void add_lit_share(const LookTree& tree, const Rect& rect, std::uint32_t light) {
     LookTree lit = tree;
-    const MirrorLooker& mirrors = shared_.mirrors_;
     const bool complete =
         shared_.shadows_.add_shadow(lit, rect, light, lists_, stats_.regions,
-                                    [&](const LookNode& node) { return mirrors.is_mirror(node); });
+                                    [&](const LookNode& node) { return is_unlit(node); });
     if (!complete && rect.width() > shared_.options_.least_shadow_region) {
       for (const Rect& part : quarters_of(rect)) add_lit_share(tree, part, light);
       return;
     }
-    for (const EndArea& end : areas_of(lit, rect)) {
+    add_lit_ends(lit, areas_of(lit, rect, {.with_samples = false}), light);
+  }
+  void add_lit_ends(const LookTree& lit, const std::vector<EndArea>& ends, std::uint32_t light) {
+    for (const EndArea& end : ends) {
       const LookNode& node = lit.nodes[end.node];
       if (node.kind != LookNode::Kind::surface || (node.lit_known == 0 && !node.light_open)) {
         continue;
@@ -490,6 +525,7 @@ class BeamTracer::Tracer {
   const std::function<void(const BeamPixel&)>& sink_;
   ShadowLists lists_;
   MirrorLists mirror_lists_;
+  LitRegions lit_regions_;  // of the region under way
   double smallest_part_ = 1;
   std::uint32_t pixel_rays_ = 0;  // that the pixel has taken so far
   std::vector<PixelSurface> surfaces_;
