@@ -1,6 +1,7 @@
 #include "beam/beam_mirror.h"
 
 #include <limits>
+#include <map>
 #include <utility>
 
 #include "beam/taylor_model.h"
@@ -9,9 +10,7 @@ namespace arris {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-
-// Of an outline, in pixels: smaller regions have closer bundles.
-constexpr double kMostBlur = 1.0 / 2048;
+constexpr std::size_t kMostNodes = 128;  // of a region's tree
 
 struct WorldPlane {
   Vec3d normal;  // unit
@@ -45,6 +44,7 @@ bool MirrorLooker::add_mirrors(LookTree& tree, const Rect& rect, MirrorLists& li
                                std::uint64_t& regions) const {
   if (!is_mirror_) return true;
   bool complete = true;
+  std::map<std::uint32_t, std::optional<LookTree>> looked;  // a mirror may be at several ends
   // Nodes that take the place of a mirror, or are added, are looked at in their turn.
   for (std::uint32_t i = 0; i < tree.nodes.size();) {
     const LookNode mirror = tree.nodes[i];
@@ -58,13 +58,20 @@ bool MirrorLooker::add_mirrors(LookTree& tree, const Rect& rect, MirrorLists& li
       continue;
     }
     const std::uint32_t number = list_for(mirror, lists);
-    const std::optional<LookTree> seen = look_into(lists.lists_[number - 1], rect, lists.tile_);
-    ++regions;
+    if (!looked.contains(number)) {
+      looked[number] = look_into(lists.lists_[number - 1], rect, lists.tile_);
+      ++regions;
+    }
+    const std::optional<LookTree>& seen = looked[number];
     complete = complete && seen && seen->complete;
-    if (!seen) {
+    // Trees below trees grow as their product.
+    const bool is_small = seen && tree.nodes.size() + seen->nodes.size() <= kMostNodes;
+    complete = complete && is_small;
+    if (!is_small) {
       tree.nodes[i].mirror_open = true;
       continue;
     }
+    tree.refines = tree.refines || seen->refines;
     replace_node(tree, i, *seen, [&](const LookNode& end) {
       // By rounding a ray may start inside what touches the mirror.
       const bool is_open = end.kind == LookNode::Kind::unknown ||
@@ -106,7 +113,7 @@ std::optional<LookTree> MirrorLooker::look_by_bundle(MirrorLists::List& list, co
   if (last.width() > rect.width()) list.levels.push_back({rect, std::move(beam.parts)});
   for (LookNode& node : seen.nodes) {
     if (node.kind != LookNode::Kind::sign) continue;
-    seen.complete = seen.complete && blur_of(node.polynomial, rect) <= kMostBlur;
+    seen.refines = true;
     node.polynomial = on_picture(node.polynomial, rect);
   }
   return seen;

@@ -265,7 +265,12 @@ std::optional<LookTree> ShadowLooker::look_from_light(LitPlane lit, std::uint32_
   const ShadowLists::List& list = list_for(lit, leaf, light, lists);
   const double end = depth_of(list.view.plane(lit.solid, lit.plane), rect);
   const BeamList in_the_way = prune_parts(list.view, list.parts, rect, end);
-  if (in_the_way.parts.empty()) return LookTree{{LookNode{}}, {}, true, false, end};
+  if (in_the_way.parts.empty()) {
+    LookTree nothing;
+    nothing.nodes.emplace_back();
+    nothing.depth_end = end;
+    return nothing;
+  }
   return look(list.view, in_the_way, rect, end, {.only = lit});
 }
 

@@ -4,10 +4,15 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <map>
+#include <set>
 #include <unordered_map>
+#include <utility>
 
 #include "base/hash.h"
 #include "base/parallel_for.h"
+#include "beam/aimed_points.h"
+#include "beam/lit_regions.h"
 #include "beam/ray_sight.h"
 
 namespace arris {
@@ -19,6 +24,11 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr int kCloserLooks = 4;
 // As long as that leaves at most this part of what was open.
 constexpr double kGain = 0.7;
+
+// Rays that a pixel aims at what was found in it and no ray has met.
+constexpr int kAimedRays = 48;
+// Of the regions that a leaf may be in, so many have a ray aimed at the middle of its part.
+constexpr std::size_t kAimedRegions = 2;
 
 }  // namespace
 
@@ -46,18 +56,18 @@ class BeamTracer::Tracer {
     LookTree tree = look(shared_.view_, list, rect, depth_end);
     const double next_end = std::min(depth_end, tree.depth_end);
     if ((tree.complete || tree.hopeless) && add_light(tree, rect)) {
+      if (!shared_.shadows_.is_joint()) {
+        lit_regions_.look(shared_.shadows_, tree, rect, lists_, stats_.regions,
+                          [&](const LookNode& node) { return is_unlit(node); });
+      }
       for (double y = rect.y0; y < rect.y1; ++y) {
         for (double x = rect.x0; x < rect.x1; ++x)
-          add_pixel(tree, {x, y, x + 1, y + 1}, rect, parts);
+          add_pixel(tree, {x, y, x + 1, y + 1}, rect, parts, next_end);
       }
     } else if (rect.width() > 1) {
       for (const Rect& part : quarters_of(rect)) visit(part, parts, next_end);
     } else {
-      surfaces_.clear();
-      smallest_part_ = 1;
-      pixel_rays_ = 0;
-      for (const Rect& part : quarters_of(rect)) visit_part(part, parts, next_end);
-      finish_pixel(rect, {rect.x0, rect.y0, rect.x0 + smallest_part_, rect.y0 + smallest_part_});
+      visit_parts_of(rect, parts, next_end);
     }
   }
 
@@ -66,6 +76,16 @@ class BeamTracer::Tracer {
  private:
   [[nodiscard]] bool is_stopped() const {
     return shared_.options_.stop != nullptr && shared_.options_.stop->load();
+  }
+  void visit_parts_of(const Rect& pixel, const std::vector<BeamPart>& parts, double depth_end) {
+    clear_pixel();
+    smallest_part_ = 1;
+    pixel_rays_ = 0;
+    pixel_looks_ = 0;
+    for (const Rect& part : quarters_of(pixel)) visit_part(part, parts, depth_end);
+    add_forced_samples(parts);
+    finish_pixel(pixel,
+                 {pixel.x0, pixel.y0, pixel.x0 + smallest_part_, pixel.y0 + smallest_part_});
   }
   // Of less than a pixel.
   void visit_part(const Rect& rect, const std::vector<BeamPart>& above, double depth_end) {
@@ -77,10 +97,16 @@ class BeamTracer::Tracer {
     const bool smallest = tree.hopeless || rect.width() <= least_region(parts);
     const bool complete = (tree.complete || smallest) && add_light(tree, rect);
     if (complete || smallest) {
-      smallest_part_ = std::min(smallest_part_, rect.width());
-      add_ends(tree, areas_of(tree, rect), parts);
-      add_lit_shares(tree, rect);
-      return;
+      const std::vector<EndArea> ends =
+          areas_of(tree, rect, {.with_samples = any_varies(tree)});
+      // An outline crosses one region after the other: each has its part of the tolerance.
+      const double most_open = shared_.options_.tolerance * rect.width() / 2;
+      if (smallest || !tree.refines || open_area(ends) <= most_open) {
+        smallest_part_ = std::min(smallest_part_, rect.width());
+        add_ends(tree, ends, rect, parts);
+        add_lit_shares(tree, rect);
+        return;
+      }
     }
     for (const Rect& part : quarters_of(rect)) {
       visit_part(part, parts, std::min(depth_end, tree.depth_end));
@@ -98,37 +124,69 @@ class BeamTracer::Tracer {
     const BeamOptions& options = shared_.options_;
     double least = options.least_region;
     if (any_whole) least = std::max(least, options.least_open_region);
-    if (pixel_rays_ > options.many_rays) least = std::max(least, options.least_crowded_region);
+    if (pixel_looks_ > 4 * options.many_looks) least = std::max(least, options.least_open_region);
+    if (pixel_rays_ > options.many_rays || pixel_looks_ > options.many_looks) least = std::max(least, options.least_crowded_region);
     return least;
   }
 
   // Shadows, and what is seen in mirrors.
   bool add_light(LookTree& tree, const Rect& rect) {
-    const MirrorLooker& mirrors = shared_.mirrors_;
-    const bool shadows =
-        shared_.shadows_.add_shadows(tree, rect, lists_, stats_.regions,
-                                     [&](const LookNode& node) { return mirrors.is_mirror(node); });
-    return mirrors.add_mirrors(tree, rect, mirror_lists_, stats_.regions) && shadows;
+    const bool shadows = shared_.shadows_.add_shadows(
+        tree, rect, lists_, stats_.regions, [&](const LookNode& node) { return is_unlit(node); });
+    std::uint64_t looks = 0;
+    const bool mirrored = shared_.mirrors_.add_mirrors(tree, rect, mirror_lists_, looks);
+    pixel_looks_ += looks;
+    stats_.regions += looks;
+    return mirrored && shadows;
+  }
+  [[nodiscard]] bool is_unlit(const LookNode& node) const {
+    return shared_.mirrors_.is_mirror(node);
   }
 
   void add_pixel(const LookTree& tree, const Rect& pixel, const Rect& region,
-                 const std::vector<BeamPart>& parts) {
+                 const std::vector<BeamPart>& parts, double depth_end) {
     if (pixel.x0 >= shared_.width_px_ || pixel.y0 >= shared_.height_px_) return;
-    AreaOptions options;
+    AreaOptions options{.with_samples = any_varies(tree)};
     double before = kInfinity;
     for (int i = 0; i <= kCloserLooks; ++i) {
-      surfaces_.clear();
-      add_ends(tree, areas_of(tree, pixel, options), parts);
+      clear_pixel();
+      add_ends(tree, areas_of(tree, pixel, options), pixel, parts);
       const double open = open_area();
       if (tree.hopeless || is_certified() || open > kGain * before) break;
       before = open;
       options.tolerance /= 4;
       options.least_side /= 4;
     }
-    add_lit_shares(tree, pixel);
+    if (tree.refines && !is_certified()) {
+      visit_parts_of(pixel, parts, depth_end);
+      return;
+    }
+    add_forced_samples(parts);
+    add_lit_shares_of_pixel(tree, pixel);
     finish_pixel(pixel, region);
   }
 
+  void clear_pixel() {
+    surfaces_.clear();
+    unresolved_.clear();
+  }
+
+  // Is it curved, or seen in a curved mirror?
+  [[nodiscard]] bool varies(const LookNode& node) const {
+    const auto is_curved = [](const SeenSurface& seen) { return !seen.surface.is_plane(); };
+    return (node.kind == LookNode::Kind::surface && is_curved(node.seen)) ||
+           (node.mirrors != 0 &&
+            std::ranges::any_of(mirror_lists_.chain(node.mirrors), is_curved));
+  }
+  [[nodiscard]] bool any_varies(const LookTree& tree) const {
+    return std::ranges::any_of(tree.nodes, [&](const LookNode& node) { return varies(node); });
+  }
+
+  static double open_area(const std::vector<EndArea>& ends) {
+    double open = 0;
+    for (const EndArea& end : ends) open += end.hi - end.lo;
+    return open;
+  }
   [[nodiscard]] double open_area() const {
     double open = 0;
     for (const PixelSurface& s : surfaces_) open += s.hi - s.lo;
@@ -145,12 +203,12 @@ class BeamTracer::Tracer {
     });
   }
 
-  void add_ends(const LookTree& tree, const std::vector<EndArea>& ends,
+  void add_ends(const LookTree& tree, const std::vector<EndArea>& ends, const Rect& rect,
                 const std::vector<BeamPart>& parts) {
     for (const EndArea& end : ends) {
       const LookNode& node = tree.nodes[end.node];
       if (node.kind == LookNode::Kind::unknown) {
-        add_unknown(tree, node, end, parts);
+        add_unknown(tree, node, end, rect, parts);
         continue;
       }
       PixelSurface surface;
@@ -165,24 +223,31 @@ class BeamTracer::Tracer {
       surface.mirror_open = node.mirror_open;
       surface.light_open = node.light_open;
       surface.mirror_number = node.mirrors;
-      if (!shared_.shadows_.is_joint()) {
-        surface.lit_shares.resize(shared_.shadows_.light_count());
-        for (LitShare& share : surface.lit_shares) share.open = end.estimate;
-      }
       if (varies(node) && end.lo < 1) surface.samples = end.samples;
       add(surface);
     }
   }
 
-  // Is it curved, or seen in a curved mirror?
-  [[nodiscard]] bool varies(const LookNode& node) const {
-    const auto is_curved = [](const SeenSurface& seen) { return !seen.surface.is_plane(); };
-    return (node.kind == LookNode::Kind::surface && is_curved(node.seen)) ||
-           (node.mirrors != 0 &&
-            std::ranges::any_of(mirror_lists_.chain(node.mirrors), is_curved));
+  // How much of each surface each light reaches, where that is asked for one by one: of a pixel whose region was looked
+  // at from the lights,
+  void add_lit_shares_of_pixel(const LookTree& tree, const Rect& pixel) {
+    if (shared_.shadows_.is_joint()) return;
+    for (std::uint32_t light = 0; light < shared_.shadows_.light_count(); ++light) {
+      const LitTree& lit = lit_regions_.tree_of(light, pixel);
+      if (!lit.complete) {
+        for (const Rect& part : quarters_of(pixel)) add_lit_share(tree, part, light);
+        continue;
+      }
+      const std::vector<EndArea> ends = areas_of(lit.tree, pixel, {.with_samples = false});
+      // Signs of a large region may be many that cross.
+      if (open_area(ends) > shared_.options_.tolerance && lit.rect.width() > 1) {
+        add_lit_share(tree, pixel, light);
+      } else {
+        add_lit_ends(lit.tree, ends, light);
+      }
+    }
   }
-
-  // How much of each surface each light reaches, where that is asked for one by one.
+  // and of a part of a pixel.
   void add_lit_shares(const LookTree& tree, const Rect& rect) {
     if (shared_.shadows_.is_joint()) return;
     for (std::uint32_t light = 0; light < shared_.shadows_.light_count(); ++light) {
@@ -191,15 +256,17 @@ class BeamTracer::Tracer {
   }
   void add_lit_share(const LookTree& tree, const Rect& rect, std::uint32_t light) {
     LookTree lit = tree;
-    const MirrorLooker& mirrors = shared_.mirrors_;
     const bool complete =
         shared_.shadows_.add_shadow(lit, rect, light, lists_, stats_.regions,
-                                    [&](const LookNode& node) { return mirrors.is_mirror(node); });
+                                    [&](const LookNode& node) { return is_unlit(node); });
     if (!complete && rect.width() > shared_.options_.least_shadow_region) {
       for (const Rect& part : quarters_of(rect)) add_lit_share(tree, part, light);
       return;
     }
-    for (const EndArea& end : areas_of(lit, rect)) {
+    add_lit_ends(lit, areas_of(lit, rect, {.with_samples = false}), light);
+  }
+  void add_lit_ends(const LookTree& lit, const std::vector<EndArea>& ends, std::uint32_t light) {
+    for (const EndArea& end : ends) {
       const LookNode& node = lit.nodes[end.node];
       if (node.kind != LookNode::Kind::surface || (node.lit_known == 0 && !node.light_open)) {
         continue;
@@ -223,8 +290,8 @@ class BeamTracer::Tracer {
     }
   }
 
-  // Anything in the window may be seen, or nothing; a ray says what to take for it.
-  void add_unknown(const LookTree& tree, const LookNode& node, const EndArea& end,
+  // Anything in the window may be seen, or nothing; a ray says what to take for it, until others are aimed.
+  void add_unknown(const LookTree& tree, const LookNode& node, const EndArea& end, const Rect& rect,
                    const std::vector<BeamPart>& parts) {
     PixelSurface open;
     open.hi = end.hi;
@@ -232,21 +299,34 @@ class BeamTracer::Tracer {
     open.sample_weight = 0;
     add(open);
     for (std::uint32_t i = 0; i < node.count; ++i) {
-      open.seen = tree.candidates[node.first + i];
-      add(open);
+      add_candidate(tree.candidates[node.first + i], end, rect);
     }
     if (node.count == 0) {
-      for (const BeamPart& part : parts) add_all_faces(part, open);
+      for (const BeamPart& part : parts) add_all_faces(part, end, rect);
     }
-    ++stats_.rays;
-    ++pixel_rays_;
-    open.seen = seen_by_ray(parts, end.sample);
-    open.hi = 0;
-    open.estimate = open.sample_weight = end.estimate;
+    const std::optional<SeenSurface> seen = seen_by_ray(parts, end.sample);
+    add_estimate(seen, end.sample, end.estimate);
+    Unresolved& region = unresolved_.emplace_back();
+    region = {rect, seen, end.estimate, {}};
+    for (std::uint32_t i = 0; i < node.count; ++i) {
+      const SeenSurface& candidate = tree.candidates[node.first + i];
+      region.leaves.push_back({candidate.solid, candidate.leaf});
+    }
+    std::ranges::sort(region.leaves);
+    region.leaves.erase(std::ranges::unique(region.leaves).begin(), region.leaves.end());
+  }
+
+  // It is seen nowhere but in its leaf's window.
+  void add_candidate(const SeenSurface& seen, const EndArea& end, const Rect& rect) {
+    PixelSurface open;
+    open.seen = seen;
+    open.hi = std::min(end.hi, part_in_window(shared_.view_, {seen.solid, seen.leaf}, rect).area());
+    open.sample = end.sample;
+    open.sample_weight = 0;
     add(open);
   }
 
-  void add_all_faces(const BeamPart& part, PixelSurface open) {
+  void add_all_faces(const BeamPart& part, const EndArea& end, const Rect& rect) {
     for (const std::uint32_t leaf : part.expression.leaves()) {
       const BeamShape& shape = *shared_.solids_[part.solid].shape;
       const ConvexLeaf* convex = shape.convex(leaf);
@@ -255,15 +335,118 @@ class BeamTracer::Tracer {
       for (std::uint32_t face = 0; face < faces; ++face) {
         for (const bool entering : {true, false}) {
           const std::uint32_t number = shape.is_whole(leaf) ? kAnyFace : face;
-          open.seen = SeenSurface{part.solid, leaf, number, {}, entering};
-          add(open);
+          add_candidate({part.solid, leaf, number, {}, entering}, end, rect);
         }
       }
     }
   }
 
-  [[nodiscard]] std::optional<SeenSurface> seen_by_ray(const std::vector<BeamPart>& parts,
-                                                       Vec2d at) const {
+  void add_estimate(const std::optional<SeenSurface>& seen, Vec2d sample, double estimate) {
+    PixelSurface surface;
+    surface.seen = seen;
+    surface.sample = sample;
+    surface.estimate = surface.sample_weight = estimate;
+    add(surface);
+  }
+
+  // What was found shows: rays are aimed at the leaves that may be seen in regions that stayed unknown and that no
+  // ray has met. Those they meet take a part of what the region's own ray stood for.
+  void add_forced_samples(const std::vector<BeamPart>& parts) {
+    if (unresolved_.empty()) return;
+    std::set<LeafName> done;  // met, or tried
+    for (const PixelSurface& s : surfaces_) {
+      if (s.seen && s.estimate > 0) done.insert({s.seen->solid, s.seen->leaf});
+    }
+    int left = kAimedRays;
+    for (std::size_t i = 0; i < surfaces_.size() && left > 0; ++i) {  // it grows
+      const PixelSurface& s = surfaces_[i];
+      if (!s.seen || s.mirror_number != 0 || !(s.hi > 0)) continue;
+      const LeafPlace leaf{s.seen->solid, s.seen->leaf};
+      if (!done.insert({leaf.solid, leaf.leaf}).second) continue;
+      const auto try_aims = [&](const std::vector<Aim>& aims) {
+        for (const Aim& aim : aims) {
+          if (left-- <= 0) return true;
+          const std::optional<SeenSurface> seen = force(aim, parts);
+          if (!seen) continue;
+          done.insert({seen->solid, seen->leaf});
+          if (seen->solid == leaf.solid && seen->leaf == leaf.leaf) return true;
+        }
+        return false;
+      };
+      if (!try_aims(aims_at(leaf))) try_aims(aims_at_contacts(leaf, left));
+    }
+  }
+
+  struct Aim {
+    std::size_t region = 0;  // of unresolved_
+    Vec2d at;
+  };
+  static bool holds(const Rect& rect, Vec2d p) {
+    return p.x >= rect.x0 && p.x <= rect.x1 && p.y >= rect.y0 && p.y <= rect.y1;
+  }
+  [[nodiscard]] std::vector<Aim> aims_at(const LeafPlace& place) const {
+    std::vector<Aim> aims;
+    const std::vector<Vec2d> points =
+        aimed_points(shared_.eye_, shared_.solids_[place.solid], place.leaf);
+    std::vector<std::pair<double, Aim>> widest;  // by minus the area
+    for (std::size_t i = 0; i < unresolved_.size(); ++i) {
+      const Rect part = part_in_window(shared_.view_, place, unresolved_[i].rect);
+      if (!(part.area() > 0)) continue;
+      for (const Vec2d& p : points) {
+        if (holds(part, p)) aims.push_back({i, p});
+      }
+      widest.push_back({-part.area(), {i, {part.middle_x(), part.middle_y()}}});
+    }
+    std::ranges::stable_sort(widest, {}, &std::pair<double, Aim>::first);
+    widest.resize(std::min(widest.size(), kAimedRegions));
+    for (const auto& [area, aim] : widest) aims.push_back(aim);
+    return aims;
+  }
+
+  // Where the leaf changes its order with another that is unknown in one region with it. Each try costs a ray.
+  [[nodiscard]] std::vector<Aim> aims_at_contacts(const LeafPlace& place, int& left) const {
+    std::map<LeafName, std::vector<std::size_t>> regions;  // by the other leaf
+    for (std::size_t i = 0; i < unresolved_.size(); ++i) {
+      const std::vector<LeafName>& leaves = unresolved_[i].leaves;
+      if (!std::ranges::binary_search(leaves, LeafName{place.solid, place.leaf})) continue;
+      for (const LeafName& leaf : leaves) regions[leaf].push_back(i);
+    }
+    std::vector<Aim> aims;
+    for (const auto& [leaf, of_leaf] : regions) {
+      const LeafPlace other{leaf.first, leaf.second};
+      if (leaf == LeafName{place.solid, place.leaf} || left-- <= 0) continue;
+      const Rect& start = unresolved_[of_leaf[of_leaf.size() / 2]].rect;
+      for (const Vec2d& p :
+           points_of_contact(shared_.solids_, shared_.eye_, {place, other}, start)) {
+        const auto at = std::ranges::find_if(
+            of_leaf, [&](std::size_t i) { return holds(unresolved_[i].rect, p); });
+        if (at != of_leaf.end()) aims.push_back({*at, p});
+      }
+    }
+    return aims;
+  }
+
+  // A surface that had no share has half of what its leaf may fill of the region from now on, if the ray meets it.
+  std::optional<SeenSurface> force(const Aim& aim, const std::vector<BeamPart>& parts) {
+    Unresolved& region = unresolved_[aim.region];
+    const std::optional<SeenSurface> seen = seen_by_ray(parts, aim.at);
+    if (!seen) return seen;
+    PixelSurface surface;
+    surface.seen = seen;
+    if (entry_of(surface).estimate > 0) return seen;
+    const Rect part = part_in_window(shared_.view_, {seen->solid, seen->leaf}, region.rect);
+    const double share = std::min(part.area(), region.left) / 2;
+    region.left -= share;
+    add_estimate(seen, aim.at, share);
+    surface.seen = region.seen;
+    surface.estimate = -share;
+    add(surface);
+    return seen;
+  }
+
+  std::optional<SeenSurface> seen_by_ray(const std::vector<BeamPart>& parts, Vec2d at) {
+    ++stats_.rays;
+    ++pixel_rays_;
     const std::optional<RaySight> sight =
         see(shared_.solids_, parts, ray_through(shared_.eye_, at));
     return sight ? std::optional(sight->seen) : std::nullopt;
@@ -319,9 +502,9 @@ class BeamTracer::Tracer {
     known.lo += surface.lo;
     known.hi += surface.hi;
     known.estimate += surface.estimate;
-    known.lit_shares.resize(surface.lit_shares.size());
-    for (std::size_t i = 0; i < known.lit_shares.size(); ++i) {
-      known.lit_shares[i].open += surface.lit_shares[i].open;
+    if (!shared_.shadows_.is_joint()) {
+      known.lit_shares.resize(shared_.shadows_.light_count());
+      for (LitShare& share : known.lit_shares) share.open += surface.estimate;
     }
     known.samples.insert(known.samples.end(), surface.samples.begin(), surface.samples.end());
     if (surface.sample_weight > known.sample_weight) {
@@ -356,13 +539,25 @@ class BeamTracer::Tracer {
     sink_(out);
   }
 
+  using LeafName = std::pair<std::uint32_t, std::uint32_t>;
+  // A region in which something stayed unknown.
+  struct Unresolved {
+    Rect rect;
+    std::optional<SeenSurface> seen;  // by the ray that stands in
+    double left = 0;                  // of what that stands for
+    std::vector<LeafName> leaves;     // that are put in order there, ascending; none: too many
+  };
+
   const BeamTracer& shared_;
   const std::function<void(const BeamPixel&)>& sink_;
   ShadowLists lists_;
   MirrorLists mirror_lists_;
+  LitRegions lit_regions_;  // of the region under way
   double smallest_part_ = 1;
-  std::uint32_t pixel_rays_ = 0;  // that the pixel has taken so far
+  std::uint32_t pixel_rays_ = 0;   // that the pixel has taken so far
+  std::uint64_t pixel_looks_ = 0;  // into mirrors
   std::vector<PixelSurface> surfaces_;
+  std::vector<Unresolved> unresolved_;                     // of the pixel
   std::unordered_map<Key, std::uint32_t, KeyHash> index_;  // of surfaces_, where they are many
   BeamStats stats_;
 };

@@ -58,6 +58,7 @@ struct LookTree {
   std::vector<LookNode> nodes;  // [root] first in the end: node 0 is the root
   std::vector<SeenSurface> candidates;
   bool complete = true;   // nothing is unknown
+  bool refines = false;   // a smaller rectangle knows its signs better
   bool hopeless = false;  // all that is unknown is a matter of rounding, in smaller rectangles, too
   double depth_end = std::numeric_limits<double>::infinity();  // no ray sees farther
 };

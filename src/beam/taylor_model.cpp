@@ -195,13 +195,4 @@ Quadratic on_picture(const Quadratic& a, const Rect& rect) {
           yy};
 }
 
-double blur_of(const Quadratic& a, const Rect& rect) {
-  const Quadratic q = gathered(a);
-  const Interval range = range_over(q, kUnitSquare);
-  if (range.lo > 0 || range.hi < 0) return 0;
-  const double width = q.c.width();
-  const double slope = std::hypot(2 * q.x.lo / rect.width(), 2 * q.y.lo / rect.height());
-  return slope > 0 ? width / slope : kInfinity;
-}
-
 }  // namespace arris

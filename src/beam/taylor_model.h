@@ -41,7 +41,4 @@ Vec3<Interval> ranges_of(const QuadraticVec& v);
 
 // The polynomial over the square as one over the picture, valid in the rectangle that the square stands for.
 Quadratic on_picture(const Quadratic& a, const Rect& rect);
-// How far apart, in pixels, its bounds' zeros are where it has one in the square that stands for the rectangle.
-double blur_of(const Quadratic& a, const Rect& rect);
-
 }  // namespace arris

@@ -93,7 +93,7 @@ class Integrator {
 
   std::vector<EndArea> run(const Rect& rect) {
     visit(rect, descend(0, rect));
-    if (!is_end(descend(0, rect))) add_samples(rect);
+    if (options_.with_samples && !is_end(descend(0, rect))) add_samples(rect);
     for (std::size_t i = 0; i < of_node_.size(); ++i) {
       of_node_[i].area.node = std::uint32_t(i);
       if (of_node_[i].area.hi > 0) ends_.push_back(of_node_[i].area);

@@ -33,6 +33,7 @@ inline constexpr int kSampleGrid = 8;  // points a pixel and side
 struct AreaOptions {
   double tolerance = 1.0 / 4096;  // of hi - lo, per unit of a piece's side
   double least_side = 1.0 / 256;
+  bool with_samples = true;  // as dear as the areas; curved surfaces need them
 };
 
 std::vector<EndArea> areas_of(const LookTree& tree, const Rect& rect,

@@ -3,8 +3,12 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <map>
+#include <span>
+#include <utility>
+#include <vector>
 
 #include "support/beam_truth.h"
 
@@ -90,6 +94,54 @@ TEST(beam_shadow, shares_of_many_lights_hold_what_rays_find) {
   }
   EXPECT_LT(open, 8);  // of 768 pixels and lights
   EXPECT_GT(partly, 60);
+}
+
+// By surface of a pixel, light by light.
+using Shares = std::map<std::pair<int, SeenKey>, std::vector<LitShare>>;
+BeamStats trace_shares(const BeamScene& scene, std::span<const LightPlace> lights, int tile_px,
+                       Shares& shares) {
+  const BeamTracer tracer(scene.placed, scene.eye, scene.width, scene.height, {.tile_px = tile_px},
+                          lights);
+  BeamStats stats;
+  for (const BeamTile& tile : tracer.make_tiles()) {
+    stats.add(tracer.trace_tile(tile, [&](const BeamPixel& pixel) {
+      for (const PixelSurface& s : pixel.surfaces) {
+        if (s.hi > 0) shares[{pixel.y * scene.width + pixel.x, key_of(s.seen)}] = s.lit_shares;
+      }
+    }));
+  }
+  return stats;
+}
+
+TEST(beam_shadow, pixels_that_share_looks_from_many_lights_know_as_much_as_alone) {
+  CsgRandom random(11);
+  for (int i = 0; i < 6; ++i) {
+    BeamScene scene = shadow_scene(random, 1 + i % 3);
+    scene.width = scene.height = 32;
+    scene.eye = look_at(Vec3d(uniform(random, -3, 3), -7, 6), {0, 0, 0}, 40, 32, 32);
+    std::vector<LightPlace> lights(6);
+    for (LightPlace& light : lights) {
+      light.position = {uniform(random, -3, 3), uniform(random, -3, 3), 9};
+    }
+    Shares together, alone;
+    const BeamStats shared = trace_shares(scene, lights, 16, together);
+    const BeamStats single = trace_shares(scene, lights, 1, alone);
+    EXPECT_LT(shared.regions, single.regions / 2);
+    const double tolerance = BeamOptions{}.tolerance;
+    for (const auto& [key, of_lights] : alone) {
+      const std::vector<LitShare>& others = together[key];
+      if (of_lights.empty() && others.empty()) continue;
+      ASSERT_EQ(others.size(), of_lights.size());
+      for (std::size_t l = 0; l < lights.size(); ++l) {
+        const LitShare &a = of_lights[l], &b = others[l];
+        EXPECT_LE(b.lo, a.hi + a.doubtful + 1e-9);
+        EXPECT_GE(b.hi + b.doubtful, a.lo - 1e-9);
+        EXPECT_LE(b.hi - b.lo + b.doubtful, std::max(tolerance, a.hi - a.lo + a.doubtful));
+        EXPECT_NEAR(b.estimate, a.estimate, tolerance + a.doubtful);
+        EXPECT_NEAR(b.open, a.open, tolerance + a.doubtful);
+      }
+    }
+  }
 }
 
 TEST(beam_shadow, shares_of_lit_surface_hold_what_rays_find) {

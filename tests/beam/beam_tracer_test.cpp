@@ -254,5 +254,57 @@ TEST(beam_tracer, the_inside_of_a_torus_is_certified) {
             100);  // of 256; the torus covers about 100, of which half are at its outlines
 }
 
+// Shares of everything that a picture's pixels show of one solid, and of what they may show of it.
+struct Shown {
+  double estimate = 0, hi = 0, all = 0;
+  int pixels = 0;
+};
+Shown shown_of(const BeamScene& scene, std::uint32_t solid) {
+  Shown shown;
+  const BeamTracer tracer(scene.placed, scene.eye, scene.width, scene.height);
+  for (const BeamTile& tile : tracer.make_tiles()) {
+    tracer.trace_tile(tile, [&](const BeamPixel& pixel) {
+      double sum = 0, of_solid = 0;
+      for (const PixelSurface& s : pixel.surfaces) {
+        EXPECT_GE(s.estimate, 0);
+        EXPECT_LE(s.estimate, s.hi + 1e-12);
+        sum += s.estimate;
+        if (!s.seen || s.seen->solid != solid) continue;
+        of_solid += s.estimate;
+        shown.hi += s.hi;
+        if (!(s.estimate > 0)) continue;
+        EXPECT_EQ(std::get<0>(key_at(scene, s.sample.x, s.sample.y)), int(solid));
+      }
+      EXPECT_NEAR(sum, 1, 1e-9) << pixel.x << ", " << pixel.y;
+      shown.estimate += of_solid;
+      shown.pixels += of_solid > 0 ? 1 : 0;
+    });
+  }
+  return shown;
+}
+
+// What is left unknown is smaller than the regions, and lies between their middles.
+TEST(beam_tracer, what_stays_unknown_shows_however_small_it_is) {
+  const auto scene_of = [](const CsgTree& tree) {
+    BeamScene scene;
+    scene.width = scene.height = 4;
+    scene.add(one_leaf(CsgBox{{-2, -2, -1.2}, {2, 2, -1}}));
+    scene.add(tree);
+    scene.eye = look_at({0.2, -0.1, 5}, {0, 0, 0}, 30, 4, 4);
+    return scene;
+  };
+  const Shown ring = shown_of(scene_of({one_leaf(CsgTorus{0.003, 0.0003})}), 1);
+  EXPECT_GE(ring.pixels, 1);
+  EXPECT_LT(ring.estimate, 1e-4);
+  // The balls' common part: a lens of a radius of 1/200 pixel.
+  const double deep = 0.003 * 0.003 / 2;
+  const Shown lens = shown_of(
+      scene_of(flat_tree(CsgOperation::intersect,
+                         {ball({0.123, 0.077, 1 - deep}, 1), ball({0.123, 0.077, -1 + deep}, 1)})),
+      1);
+  EXPECT_GE(lens.pixels, 1);
+  EXPECT_LT(lens.estimate, 1e-2);
+}
+
 }  // namespace
 }  // namespace arris::test

@@ -98,13 +98,5 @@ TEST(taylor_model, polynomials_over_the_square_are_those_over_the_picture) {
   }
 }
 
-TEST(taylor_model, blur_is_how_far_the_bounds_are_apart) {
-  const Rect rect{100, 50, 100.5, 50.5};
-  // 0.01 wide, 2 per half a side of 0.25 pixels: 8 per pixel.
-  EXPECT_NEAR(blur_of(Quadratic({-0.005, 0.005}, 2, 0, 0, 0, 0), rect), 0.01 / 8, 1e-12);
-  EXPECT_EQ(blur_of(Quadratic({2.5, 2.6}, 2, 0, 0, 0, 0), rect), 0);
-  EXPECT_TRUE(std::isinf(blur_of(Quadratic({-1, 1}, 0, 0, 0, 0, 0), rect)));
-}
-
 }  // namespace
 }  // namespace arris::test
