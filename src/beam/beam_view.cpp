@@ -300,13 +300,14 @@ SpaceCell BeamView::bundle_cell(std::uint32_t solid, Interval depths) const {
   const Interval reach = (Interval(depths.hi) - Interval(depths.lo)) * Interval(0.5);
   SpaceCell cell;
   for (int k = 0; k < 3; ++k) {
-    const Quadratic &o = own.origin[k], &d = own.direction[k];
-    const Quadratic rest{0, 0, 0, o.xx + d.xx * depths, o.xy + d.xy * depths,
-                         o.yy + d.yy * depths};
-    cell.center[k] = o.c + d.c * z + range_over(rest, kUnitSquare);
-    cell.half[0][k] = o.x + d.x * depths;
-    cell.half[1][k] = o.y + d.y * depths;
-    cell.half[2][k] = d.c * reach;
+    const TaylorModel o = own.origin[k], d = own.direction[k];
+    const Quadratic from(o), along(d);
+    const Quadratic rest{0, 0, 0, from.xx + along.xx * depths, from.xy + along.xy * depths,
+                         from.yy + along.yy * depths};
+    cell.center[k] = from.c + along.c * z + range_over(rest, kUnitSquare);
+    cell.half[0][k] = from.x + along.x * depths;
+    cell.half[1][k] = from.y + along.y * depths;
+    cell.half[2][k] = along.c * reach;
   }
   return cell;
 }

@@ -7,31 +7,18 @@ namespace {
 
 using Root = BeamSurface::Root;
 
-double middle_of(Interval a) {
-  return a.lo / 2 + a.hi / 2;
-}
-
-QuadraticVec sum(const QuadraticVec& a, const QuadraticVec& b) {
-  return {a.x + b.x, a.y + b.y, a.z + b.z};
-}
-QuadraticVec difference(const QuadraticVec& a, const QuadraticVec& b) {
-  return {a.x - b.x, a.y - b.y, a.z - b.z};
-}
-QuadraticVec constant_models(const Vec3i& v) {
+ModelVec constant_models(const Vec3i& v) {
   return {constant_model(v.x), constant_model(v.y), constant_model(v.z)};
 }
-Quadratic dot_of(const Vec3i& n, const QuadraticVec& v) {
-  return v.x * n.x + v.y * n.y + v.z * n.z;
-}
-Quadratic squared_length(const QuadraticVec& a) {
+TaylorModel squared_length(const ModelVec& a) {
   return squared(a.x) + squared(a.y) + squared(a.z);
 }
 
-QuadraticVec weighted(const QuadraticVec& v, Vec3d w) {
-  return {v.x * Interval(w.x), v.y * Interval(w.y), v.z * Interval(w.z)};
+ModelVec weighted(const ModelVec& v, Vec3d w) {
+  return {v.x * w.x, v.y * w.y, v.z * w.z};
 }
-Quadratic weighted_square(const QuadraticVec& v, Vec3d w) {
-  return squared(v.x) * Interval(w.x) + squared(v.y) * Interval(w.y) + squared(v.z) * Interval(w.z);
+TaylorModel weighted_square(const ModelVec& v, Vec3d w) {
+  return squared(v.x) * w.x + squared(v.y) * w.y + squared(v.z) * w.z;
 }
 
 // In a solid's space.
@@ -40,18 +27,18 @@ bool starts_on(const RayBundle& bundle, const BeamSurface& surface) {
 }
 
 // Depth at which the rays meet the quadric: from the middle of the roots, which is near, where they lie around it.
-std::optional<Quadratic> depth_of(const BundleQuadric& q, Root root, bool begin_on_it) {
-  const auto quotient = [](const Quadratic& a, const Quadratic& b) -> std::optional<Quadratic> {
-    const std::optional<Quadratic> inverse = reciprocal(b);
-    return inverse ? std::optional(product(a, *inverse)) : std::nullopt;
+std::optional<TaylorModel> depth_of(const BundleQuadric& q, Root root, bool begin_on_it) {
+  const auto quotient = [](const TaylorModel& a, const TaylorModel& b) -> std::optional<TaylorModel> {
+    const std::optional<TaylorModel> inverse = reciprocal(b);
+    return inverse ? std::optional(a * *inverse) : std::nullopt;
   };
-  if (begin_on_it) return quotient(q.half_slope * Interval(-2), q.curvature);
-  const Quadratic middle = square_root(q.discriminant);
-  if (range_over(q.curvature, kUnitSquare).lo > 0) {
+  if (begin_on_it) return quotient(q.half_slope * -2.0, q.curvature);
+  const TaylorModel middle = square_root(q.discriminant);
+  if (range_of(q.curvature).lo > 0) {
     const bool nearer = root == Root::nearer;
-    std::optional<Quadratic> depth =
+    std::optional<TaylorModel> depth =
         quotient((nearer ? -middle : middle) - q.base_half_slope, q.curvature);
-    if (depth) depth->c += Interval(q.base);
+    if (depth) depth = *depth + constant_model(q.base);
     return depth;
   }
   switch (root) {
@@ -71,7 +58,7 @@ std::optional<Quadratic> depth_of(const BundleQuadric& q, Root root, bool begin_
 }
 
 struct BundleHit {
-  QuadraticVec point, normal;  // of any length, and to either side
+  ModelVec point, normal;  // of any length, and to either side
 };
 
 std::optional<BundleHit> hit_of(const RayBundle& bundle, std::span<const BeamSolid> solids,
@@ -79,19 +66,19 @@ std::optional<BundleHit> hit_of(const RayBundle& bundle, std::span<const BeamSol
   if (surface.is_whole()) return std::nullopt;
   const BeamSolid& solid = solids[surface.solid];
   const RayBundle own = map_bundle(solid.object_from_world, bundle);
-  std::optional<Quadratic> depth;
+  std::optional<TaylorModel> depth;
   if (surface.is_plane()) {
     if (starts_on(bundle, surface)) return std::nullopt;
     const BundlePlane form = make_form(own, solid.shape->planes()[surface.index]);
-    const std::optional<Quadratic> inverse = reciprocal(form.slope);
-    if (inverse) depth = -product(form.height, *inverse);
+    const std::optional<TaylorModel> inverse = reciprocal(form.slope);
+    if (inverse) depth = -form.height * *inverse;
   } else {
     depth = depth_of(make_form(own, solid.shape->quadrics()[surface.index]), surface.root,
                      starts_on(bundle, surface));
   }
   if (!depth) return std::nullopt;
   BundleHit hit;
-  hit.point = sum(bundle.origin, scaled(bundle.direction, *depth));
+  hit.point = bundle.origin + bundle.direction * *depth;
   const Mat3d to_world = transpose(solid.object_from_world.linear);
   if (surface.is_plane()) {
     const Vec3d n = solid.shape->planes()[surface.index].normal;
@@ -99,9 +86,9 @@ std::optional<BundleHit> hit_of(const RayBundle& bundle, std::span<const BeamSol
     return hit;
   }
   const CsgQuadric& quadric = solid.shape->quadrics()[surface.index];
-  const QuadraticVec at =
+  const ModelVec at =
       map_point(quadric.unit_from_object, map_point(solid.object_from_world, hit.point));
-  const QuadraticVec gradient = weighted(at, weights_of(quadric.form));
+  const ModelVec gradient = weighted(at, weights_of(quadric.form));
   hit.normal =
       map_vector(to_world, map_vector(transpose(quadric.unit_from_object.linear), gradient));
   return hit;
@@ -122,8 +109,7 @@ RayBundle map_bundle(const Affine3d& m, const RayBundle& bundle) {
 }
 
 RayBundle begun_at(const RayBundle& bundle, double depth) {
-  return {sum(bundle.origin, scaled(bundle.direction, Interval(depth))), bundle.direction,
-          std::nullopt};
+  return {bundle.origin + scaled(bundle.direction, depth), bundle.direction, std::nullopt};
 }
 
 // d - 2 n (n·d) / n²
@@ -131,10 +117,10 @@ std::optional<RayBundle> reflect(const RayBundle& bundle, std::span<const BeamSo
                                  const BeamSurface& surface) {
   const std::optional<BundleHit> hit = hit_of(bundle, solids, surface);
   if (!hit) return std::nullopt;
-  const std::optional<Quadratic> inverse = reciprocal(squared_length(hit->normal));
+  const std::optional<TaylorModel> inverse = reciprocal(squared_length(hit->normal));
   if (!inverse) return std::nullopt;
-  const Quadratic across = product(dot_of(hit->normal, bundle.direction), *inverse) * Interval(2);
-  return RayBundle{hit->point, difference(bundle.direction, scaled(hit->normal, across)), surface};
+  const TaylorModel across = dot(hit->normal, bundle.direction) * *inverse * 2.0;
+  return RayBundle{hit->point, bundle.direction - hit->normal * across, surface};
 }
 
 // By Snell's law with η the relative index, a = n·d < 0: η d - n (η a + √((1 - η²) n² d² + η² a²)) / n². Total
@@ -143,78 +129,76 @@ std::optional<RayBundle> refract(const RayBundle& bundle, std::span<const BeamSo
                                  const BeamSurface& surface, double relative_ior) {
   const std::optional<BundleHit> hit = hit_of(bundle, solids, surface);
   if (!hit) return std::nullopt;
-  const Quadratic across = dot_of(hit->normal, bundle.direction);
-  const Interval side = range_over(across, kUnitSquare);
+  const TaylorModel across = dot(hit->normal, bundle.direction);
+  const Interval side = range_of(across);
   if (side.contains(0)) return std::nullopt;
-  const Interval against(side.lo > 0 ? -1 : 1);
-  const Quadratic a = across * against;
-  const Quadratic nn = squared_length(hit->normal), dd = squared_length(bundle.direction);
-  const std::optional<Quadratic> inverse = reciprocal(nn);
+  const double against = side.lo > 0 ? -1 : 1;
+  const TaylorModel a = across * against;
+  const TaylorModel nn = squared_length(hit->normal), dd = squared_length(bundle.direction);
+  const std::optional<TaylorModel> inverse = reciprocal(nn);
   if (!inverse) return std::nullopt;
-  const Interval eta(relative_ior);
-  const Quadratic radicand =
-      product(nn, dd) * (Interval(1) - square(eta)) + squared(a) * square(eta);
-  if (!(range_over(radicand, kUnitSquare).lo > 0)) return std::nullopt;
-  const Quadratic along = product(a * eta + square_root(radicand), *inverse) * against;
+  const double eta = relative_ior;
+  const TaylorModel less = constant_model(Interval(1) - square(Interval(eta)));
+  const TaylorModel radicand =
+      nn * dd * less + squared(a * eta);
+  if (!(range_of(radicand).lo > 0)) return std::nullopt;
+  const TaylorModel along = (a * eta + square_root(radicand)) * *inverse * against;
   return RayBundle{
-      hit->point, difference(scaled(bundle.direction, eta), scaled(hit->normal, along)), surface};
+      hit->point, scaled(bundle.direction, eta) - hit->normal * along, surface};
 }
 
 BundlePlane make_form(const RayBundle& bundle, const CsgPlane& plane) {
-  const Vec3i n = to_intervals(plane.normal);
-  return {dot_of(n, bundle.origin) - constant_model(plane.d), dot_of(n, bundle.direction)};
+  return {dot_of(plane.normal, bundle.origin) - constant_model(plane.d),
+          dot_of(plane.normal, bundle.direction)};
 }
 
 // The discriminant is the same wherever rays begin.
 BundleQuadric make_form(const RayBundle& bundle, const CsgQuadric& quadric) {
   const Affine3d& m = quadric.unit_from_object;
   const Vec3d w = weights_of(quadric.form);
-  const Quadratic constant = constant_model(constant_of(quadric.form));
-  const QuadraticVec o = map_point(m, bundle.origin);
-  const QuadraticVec d = map_vector(m.linear, bundle.direction), weighted_d = weighted(d, w);
+  const TaylorModel constant = constant_model(constant_of(quadric.form));
+  const ModelVec o = map_point(m, bundle.origin);
+  const ModelVec d = map_vector(m.linear, bundle.direction), weighted_d = weighted(d, w);
   BundleQuadric form;
   form.value = weighted_square(o, w) - constant;
-  form.half_slope = dot_of(o, weighted_d);
+  form.half_slope = dot(o, weighted_d);
   form.curvature = weighted_square(d, w);
   form.along = o.z;
-  const double base = -middle_of(form.half_slope.c) / middle_of(form.curvature.c);
+  const double base = -form.half_slope.c / form.curvature.c;
   form.base = std::isfinite(base) ? base : 0;
-  const QuadraticVec near = sum(o, scaled(d, Interval(form.base)));
-  form.base_half_slope = dot_of(near, weighted_d);
+  const ModelVec near = o + scaled(d, form.base);
+  form.base_half_slope = dot(near, weighted_d);
   form.discriminant = squared(form.base_half_slope) -
-                      product(weighted_square(near, w) - constant, form.curvature);
+                      (weighted_square(near, w) - constant) * form.curvature;
   return form;
 }
 
 // direction · ((b - a) × (origin - a))
-Quadratic make_side(const RayBundle& bundle, const BeamShape::Edge& edge) {
-  const Vec3i a = to_intervals(edge.a), along = to_intervals(edge.b) - a;
-  const QuadraticVec o = difference(bundle.origin, constant_models(a));
-  const QuadraticVec across{o.z * along.y - o.y * along.z, o.x * along.z - o.z * along.x,
-                            o.y * along.x - o.x * along.y};
-  return dot_of(bundle.direction, across);
+TaylorModel make_side(const RayBundle& bundle, const BeamShape::Edge& edge) {
+  const Vec3i a = to_intervals(edge.a);
+  const ModelVec along = constant_models(to_intervals(edge.b) - a);
+  return dot(bundle.direction, cross(along, bundle.origin - constant_models(a)));
 }
 
 BundlePlane begun_at(const BundlePlane& form, double depth) {
-  return {form.height + form.slope * Interval(depth), form.slope};
+  return {form.height + form.slope * depth, form.slope};
 }
 
 double middle_depth(const BundlePlane& form) {
-  const double depth = -middle_of(form.height.c) / middle_of(form.slope.c);
+  const double depth = -form.height.c / form.slope.c;
   return std::isfinite(depth) && depth > 0 ? depth : 0;
 }
 
 // As of beams with one origin, see beam_view.cpp.
-Quadratic plane_before_plane(const BundlePlane& a, const BundlePlane& b) {
-  return product(a.slope, b.height) - product(b.slope, a.height);
+TaylorModel plane_before_plane(const BundlePlane& a, const BundlePlane& b) {
+  return a.slope * b.height - b.slope * a.height;
 }
-Quadratic quadric_at_plane(const BundleQuadric& q, const BundlePlane& p) {
-  return product(q.value, squared(p.slope)) -
-         product(product(p.height, p.slope), q.half_slope) * Interval(2) +
-         product(q.curvature, squared(p.height));
+TaylorModel quadric_at_plane(const BundleQuadric& q, const BundlePlane& p) {
+  return q.value * squared(p.slope) - p.height * p.slope * q.half_slope * 2.0 +
+         q.curvature * squared(p.height);
 }
-Quadratic plane_beyond_middle(const BundleQuadric& q, const BundlePlane& p) {
-  return product(p.slope, q.half_slope) - product(p.height, q.curvature);
+TaylorModel plane_beyond_middle(const BundleQuadric& q, const BundlePlane& p) {
+  return p.slope * q.half_slope - p.height * q.curvature;
 }
 
 }  // namespace arris

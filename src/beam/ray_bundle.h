@@ -19,7 +19,7 @@
 namespace arris {
 
 struct RayBundle {
-  QuadraticVec origin, direction;
+  ModelVec origin, direction;
   std::optional<BeamSurface> start;  // on which all origins lie
 };
 
@@ -45,27 +45,27 @@ std::optional<RayBundle> refract(const RayBundle& bundle, std::span<const BeamSo
 
 // See PlaneForm and QuadricForm, beam_view.h.
 struct BundlePlane {
-  Quadratic height, slope;
+  TaylorModel height, slope;
 };
 struct BundleQuadric {
-  Quadratic value, half_slope, curvature, discriminant, along;
+  TaylorModel value, half_slope, curvature, discriminant, along;
   // From afar signs are differences of large numbers, each of which is known to third order only: so of depths, from
   // one near the middle between the roots, and half_slope there.
   double base = 0;
-  Quadratic base_half_slope;
+  TaylorModel base_half_slope;
 };
 
 // Precondition: the bundle is in the solid's space.
 BundlePlane make_form(const RayBundle& bundle, const CsgPlane& plane);
 BundleQuadric make_form(const RayBundle& bundle, const CsgQuadric& quadric);
-Quadratic make_side(const RayBundle& bundle, const BeamShape::Edge& edge);
+TaylorModel make_side(const RayBundle& bundle, const BeamShape::Edge& edge);
 
 BundlePlane begun_at(const BundlePlane& form, double depth);
 // About where the middle of all rays meets it; 0 if it is never met.
 double middle_depth(const BundlePlane& form);
 
-Quadratic plane_before_plane(const BundlePlane& a, const BundlePlane& b);
-Quadratic quadric_at_plane(const BundleQuadric& q, const BundlePlane& p);
-Quadratic plane_beyond_middle(const BundleQuadric& q, const BundlePlane& p);
+TaylorModel plane_before_plane(const BundlePlane& a, const BundlePlane& b);
+TaylorModel quadric_at_plane(const BundleQuadric& q, const BundlePlane& p);
+TaylorModel plane_beyond_middle(const BundleQuadric& q, const BundlePlane& p);
 
 }  // namespace arris

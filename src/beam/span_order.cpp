@@ -38,7 +38,7 @@ Order reversed(Order order) {
 Quadratic difference_of(const BeamView& view, const PlaneForm& a, const PlaneForm& b) {
   return plane_before_plane(a, b, view.kind());
 }
-Quadratic difference_of(const BeamView&, const BundlePlane& a, const BundlePlane& b) {
+TaylorModel difference_of(const BeamView&, const BundlePlane& a, const BundlePlane& b) {
   const double base = middle_depth(a);
   return plane_before_plane(begun_at(a, base), begun_at(b, base));
 }
@@ -72,13 +72,19 @@ struct PlaneAndQuadric {
   const Quadric& q;
   double base = 0;
 
-  [[nodiscard]] Quadratic value_at_plane() const {
-    if constexpr (std::is_same_v<Plane, PlaneForm>) return quadric_at_plane(q, p, view.kind());
-    else return quadric_at_plane(q, p);
+  [[nodiscard]] auto value_at_plane() const {
+    if constexpr (std::is_same_v<Plane, BundlePlane>) {
+      return quadric_at_plane(q, p);
+    } else {
+      return quadric_at_plane(q, p, view.kind());
+    }
   }
-  [[nodiscard]] Quadratic beyond_middle() const {
-    if constexpr (std::is_same_v<Plane, PlaneForm>) return plane_beyond_middle(q, p, view.kind());
-    else return plane_beyond_middle(q, p);
+  [[nodiscard]] auto beyond_middle() const {
+    if constexpr (std::is_same_v<Plane, BundlePlane>) {
+      return plane_beyond_middle(q, p);
+    } else {
+      return plane_beyond_middle(q, p, view.kind());
+    }
   }
   [[nodiscard]] SignKey key(Of of) const {
     return {of, plane.surface.solid, plane.surface.index, root.surface.solid, root.surface.index};

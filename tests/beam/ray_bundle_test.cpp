@@ -10,8 +10,8 @@
 namespace arris::test {
 namespace {
 
-Vec3i ranges_at(const QuadraticVec& v, double x, double y) {
-  const auto at = [&](const Quadratic& a) { return range_over(a, {x, y, x, y}); };
+Vec3i ranges_at(const ModelVec& v, double x, double y) {
+  const auto at = [&](const TaylorModel& a) { return range_over(Quadratic(a), {x, y, x, y}); };
   return {at(v.x), at(v.y), at(v.z)};
 }
 
