@@ -33,16 +33,17 @@ EyeRays mirror_eye(const EyeRays& eye, const WorldPlane& plane) {
 }  // namespace
 
 MirrorLooker::MirrorLooker(std::span<const BeamSolid> solids, const EyeRays& eye,
-                           IsMirror is_mirror)
-    : solids_(solids), eye_(eye), is_mirror_(std::move(is_mirror)) {}
+                           OpticsOf optics)
+    : solids_(solids), eye_(eye), optics_(std::move(optics)) {}
 
 bool MirrorLooker::is_mirror(const LookNode& node) const {
-  return is_mirror_ && node.kind == LookNode::Kind::surface && is_mirror_(node.seen);
+  return optics_ && node.kind == LookNode::Kind::surface &&
+         optics_(node.seen).kind != Optics::Kind::scatters;
 }
 
 bool MirrorLooker::add_mirrors(LookTree& tree, const Rect& rect, MirrorLists& lists,
                                std::uint64_t& regions) const {
-  if (!is_mirror_) return true;
+  if (!optics_) return true;
   bool complete = true;
   std::map<std::uint32_t, std::optional<LookTree>> looked;  // a mirror may be at several ends
   // Nodes that take the place of a mirror, or are added, are looked at in their turn.
@@ -57,7 +58,13 @@ bool MirrorLooker::add_mirrors(LookTree& tree, const Rect& rect, MirrorLists& li
       tree.nodes[i].mirror_open = true;
       continue;
     }
-    const std::uint32_t number = list_for(mirror, lists);
+    const std::optional<MirrorLink> link = link_of(mirror, rect, lists);
+    if (!link) {
+      complete = false;
+      tree.nodes[i].mirror_open = true;
+      continue;
+    }
+    const std::uint32_t number = list_for(mirror.mirrors, *link, lists);
     if (!looked.contains(number)) {
       looked[number] = look_into(lists.lists_[number - 1], rect, lists.tile_);
       ++regions;
@@ -121,11 +128,26 @@ std::optional<LookTree> MirrorLooker::look_by_bundle(MirrorLists::List& list, co
 
 std::optional<RayBundle> MirrorLooker::bundle_of(const MirrorChain& chain, const Rect& rect) const {
   std::optional<RayBundle> bundle = make_bundle(eye_, rect);
-  for (const SeenSurface& mirror : chain) {
-    bundle = reflect(*bundle, solids_, mirror.surface);
+  for (const MirrorLink& link : chain) {
+    bundle = link.refracted ? refract(*bundle, solids_, link.seen.surface, link.relative_ior)
+                            : reflect(*bundle, solids_, link.seen.surface);
     if (!bundle) break;
   }
   return bundle;
+}
+
+std::optional<MirrorLink> MirrorLooker::link_of(const LookNode& mirror, const Rect& rect,
+                                                const MirrorLists& lists) const {
+  const Optics optics = optics_(mirror.seen);
+  if (optics.kind == Optics::Kind::reflects) return MirrorLink{mirror.seen, false, 1};
+  const MirrorChain none;
+  const std::optional<RayBundle> bundle =
+      bundle_of(mirror.mirrors == 0 ? none : lists.chain(mirror.mirrors), rect);
+  if (!bundle) return std::nullopt;
+  const Passing passing =
+      passing_of(*bundle, solids_, mirror.seen.surface, optics.relative_ior);
+  if (passing == Passing::unknown) return std::nullopt;
+  return MirrorLink{mirror.seen, passing == Passing::all, optics.relative_ior};
 }
 
 std::vector<BeamPart> MirrorLooker::parts_near(const RayBundle& bundle) const {
@@ -141,18 +163,20 @@ std::vector<BeamPart> MirrorLooker::parts_near(const RayBundle& bundle) const {
   return parts;
 }
 
-std::uint32_t MirrorLooker::list_for(const LookNode& mirror, MirrorLists& lists) const {
-  const SeenSurface& seen = mirror.seen;
-  const MirrorLists::Key key{mirror.mirrors, seen.solid, seen.leaf, seen.face, seen.surface.root};
+std::uint32_t MirrorLooker::list_for(std::uint32_t mirrors, const MirrorLink& link,
+                                     MirrorLists& lists) const {
+  const SeenSurface& seen = link.seen;
+  const MirrorLists::Key key{mirrors,   seen.solid,        seen.leaf,
+                             seen.face, seen.surface.root, link.refracted};
   const auto known = lists.known_.find(key);
   if (known != lists.known_.end()) return known->second;
   MirrorLists::List list;
-  const MirrorLists::List* before =
-      mirror.mirrors != 0 ? &lists.lists_[mirror.mirrors - 1] : nullptr;
+  const MirrorLists::List* before = mirrors != 0 ? &lists.lists_[mirrors - 1] : nullptr;
   if (before != nullptr) list.chain = before->chain;
-  list.chain.push_back(seen);
+  list.chain.push_back(link);
   // From within a solid the rays begin inside of it, which the flat mirror's view has not.
-  if (seen.surface.is_plane() && seen.entering && (before == nullptr || before->flat)) {
+  if (seen.surface.is_plane() && seen.entering && !link.refracted &&
+      (before == nullptr || before->flat)) {
     list.flat = make_flat(before == nullptr ? eye_ : before->flat->eye, seen, lists.tile_);
   }
   lists.lists_.push_back(std::move(list));

@@ -1,9 +1,10 @@
-// beam_mirror.h — what a beam sees in mirrors
+// beam_mirror.h — what a beam sees in mirrors and through glass
 // What       A flat mirror shows the scene as an eye behind it would see it, at the eye's mirrored place: the rays have
 //            one apex again, so that the same look tells what is seen in it, and the signs it depends on go on below
-//            the mirror's node. What a curved mirror shows is looked at by a bundle of rays (ray_bundle.h), and so is
-//            what is seen in turn in any mirror after it: level by level, in a tree of beams, of which each hands what
-//            it may meet to its parts.
+//            the mirror's node. What a curved mirror shows, or clear glass, is looked at by a bundle of rays
+//            (ray_bundle.h), and so is what is seen in turn in any mirror after it: level by level, in a tree of beams,
+//            of which each hands what it may meet to its parts. Of glass it is what it lets through, or reflects
+//            totally, that is looked at.
 // Guarantee  as that of the look, for surfaces, not for their light. A flat mirror's eye is rounded
 //            (tests/beam/beam_mirror_test.cpp)
 // Limits     at most kMostMirrors in one another. Leaves that are seen as a whole stay open.
@@ -27,9 +28,23 @@
 
 namespace arris {
 
-inline constexpr std::size_t kMostMirrors = 4;
+inline constexpr std::size_t kMostMirrors = 6;
 
-using MirrorChain = std::vector<SeenSurface>;  // from the eye on
+// What a surface does to all rays that meet it.
+struct Optics {
+  enum class Kind : std::uint8_t { scatters, reflects, refracts };
+  Kind kind = Kind::scatters;
+  double relative_ior = 1;  // refracts: of the side where rays come from, to that of the other
+};
+using OpticsOf = std::function<Optics(const SeenSurface&)>;
+
+// A surface on the way to what is seen, from the eye on.
+struct MirrorLink {
+  SeenSurface seen;
+  bool refracted = false;  // else reflected
+  double relative_ior = 1;
+};
+using MirrorChain = std::vector<MirrorLink>;
 
 // What one tile sees in mirrors. For one thread.
 class MirrorLists {
@@ -59,22 +74,20 @@ class MirrorLists {
     std::optional<FlatView> flat;
     std::vector<Level> levels;  // each within the one before; of bundles
   };
-  using Key =
-      std::tuple<std::uint32_t, std::uint32_t, std::uint32_t, std::uint32_t, BeamSurface::Root>;
+  using Key = std::tuple<std::uint32_t, std::uint32_t, std::uint32_t, std::uint32_t,
+                         BeamSurface::Root, bool>;
   Rect tile_;
   std::vector<List> lists_;
-  // Mirrors so far, solid, leaf, face, root: the list's number + 1.
+  // Mirrors so far, solid, leaf, face, root, refracted: the list's number + 1.
   std::map<Key, std::uint32_t> known_;
 };
-
-// Is all that this surface does to be a mirror?
-using IsMirror = std::function<bool(const SeenSurface&)>;
 
 class MirrorLooker {
  public:
   // `solids` must outlive it. No function: there are no mirrors.
-  MirrorLooker(std::span<const BeamSolid> solids, const EyeRays& eye, IsMirror is_mirror);
+  MirrorLooker(std::span<const BeamSolid> solids, const EyeRays& eye, OpticsOf optics);
 
+  // Does it reflect or refract all light?
   [[nodiscard]] bool is_mirror(const LookNode& node) const;
   // Replaces mirrors by what is seen in them. False: a smaller rectangle may tell more; mirrors that could not be looked
   // into stay. Regions looked at are added to `regions`.
@@ -82,7 +95,11 @@ class MirrorLooker {
                    std::uint64_t& regions) const;
 
  private:
-  [[nodiscard]] std::uint32_t list_for(const LookNode& mirror, MirrorLists& lists) const;
+  // Nothing: some rays may do this, some that.
+  [[nodiscard]] std::optional<MirrorLink> link_of(const LookNode& mirror, const Rect& rect,
+                                                  const MirrorLists& lists) const;
+  [[nodiscard]] std::uint32_t list_for(std::uint32_t mirrors, const MirrorLink& link,
+                                       MirrorLists& lists) const;
   [[nodiscard]] MirrorLists::FlatView make_flat(const EyeRays& eye, const SeenSurface& mirror,
                                                 const Rect& tile) const;
   // Nothing: no bundle holds the rays.
@@ -96,7 +113,7 @@ class MirrorLooker {
 
   std::span<const BeamSolid> solids_;
   EyeRays eye_;
-  IsMirror is_mirror_;
+  OpticsOf optics_;
 };
 
 }  // namespace arris

@@ -176,7 +176,7 @@ class BeamTracer::Tracer {
     const auto is_curved = [](const SeenSurface& seen) { return !seen.surface.is_plane(); };
     return (node.kind == LookNode::Kind::surface && is_curved(node.seen)) ||
            (node.mirrors != 0 &&
-            std::ranges::any_of(mirror_lists_.chain(node.mirrors), is_curved));
+            std::ranges::any_of(mirror_lists_.chain(node.mirrors), is_curved, &MirrorLink::seen));
   }
   [[nodiscard]] bool any_varies(const LookTree& tree) const {
     return std::ranges::any_of(tree.nodes, [&](const LookNode& node) { return varies(node); });
@@ -572,7 +572,7 @@ BeamTracer::BeamTracer(std::span<const BeamSolid> solids, const EyeRays& eye, in
       options_(options),
       view_(solids, eye),
       shadows_(solids, eye, lights),
-      mirrors_(solids, eye, options.is_mirror) {}
+      mirrors_(solids, eye, options.optics) {}
 
 std::vector<BeamTile> BeamTracer::make_tiles() const {
   BeamTile whole;

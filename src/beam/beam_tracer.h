@@ -79,7 +79,7 @@ struct BeamOptions {
   int tile_px = 16;                    // a power of two
   int threads = 0;                     // 0: all
   const std::atomic<bool>* stop = nullptr;  // set: pixels may be left out
-  IsMirror is_mirror = {};                  // of flat surfaces; none: no mirrors are looked into
+  OpticsOf optics = {};                     // none: no mirrors are looked into
 };
 
 struct BeamTile {

@@ -123,28 +123,42 @@ std::optional<RayBundle> reflect(const RayBundle& bundle, std::span<const BeamSo
   return RayBundle{hit->point, bundle.direction - hit->normal * across, surface};
 }
 
-// By Snell's law with η the relative index, a = n·d < 0: η d - n (η a + √((1 - η²) n² d² + η² a²)) / n². Total
-// reflection where the root's argument is negative.
+namespace {
+
+// Of a normal against the rays, a = n·d < 0: (1 - η²) n² d² + η² a², which is negative under total reflection.
+TaylorModel radicand_of(const RayBundle& bundle, const ModelVec& normal, const TaylorModel& across,
+                        double eta) {
+  const TaylorModel less = constant_model(Interval(1) - square(Interval(eta)));
+  return squared_length(normal) * squared_length(bundle.direction) * less + squared(across * eta);
+}
+
+}  // namespace
+
+// By Snell's law with η the relative index: η d - n (η a + √radicand) / n².
 std::optional<RayBundle> refract(const RayBundle& bundle, std::span<const BeamSolid> solids,
                                  const BeamSurface& surface, double relative_ior) {
-  const std::optional<BundleHit> hit = hit_of(bundle, solids, surface);
+  std::optional<BundleHit> hit = hit_of(bundle, solids, surface);
   if (!hit) return std::nullopt;
-  const TaylorModel across = dot(hit->normal, bundle.direction);
-  const Interval side = range_of(across);
+  const Interval side = range_of(dot(hit->normal, bundle.direction));
   if (side.contains(0)) return std::nullopt;
-  const double against = side.lo > 0 ? -1 : 1;
-  const TaylorModel a = across * against;
-  const TaylorModel nn = squared_length(hit->normal), dd = squared_length(bundle.direction);
-  const std::optional<TaylorModel> inverse = reciprocal(nn);
+  if (side.lo > 0) hit->normal = -hit->normal;
+  const TaylorModel across = dot(hit->normal, bundle.direction);
+  const std::optional<TaylorModel> inverse = reciprocal(squared_length(hit->normal));
   if (!inverse) return std::nullopt;
-  const double eta = relative_ior;
-  const TaylorModel less = constant_model(Interval(1) - square(Interval(eta)));
-  const TaylorModel radicand =
-      nn * dd * less + squared(a * eta);
+  const TaylorModel radicand = radicand_of(bundle, hit->normal, across, relative_ior);
   if (!(range_of(radicand).lo > 0)) return std::nullopt;
-  const TaylorModel along = (a * eta + square_root(radicand)) * *inverse * against;
-  return RayBundle{
-      hit->point, scaled(bundle.direction, eta) - hit->normal * along, surface};
+  const TaylorModel along = (across * relative_ior + square_root(radicand)) * *inverse;
+  return RayBundle{hit->point,
+                   scaled(bundle.direction, relative_ior) - hit->normal * along, surface};
+}
+
+Passing passing_of(const RayBundle& bundle, std::span<const BeamSolid> solids,
+                   const BeamSurface& surface, double relative_ior) {
+  const std::optional<BundleHit> hit = hit_of(bundle, solids, surface);
+  if (!hit) return Passing::unknown;
+  const TaylorModel across = dot(hit->normal, bundle.direction);
+  const Interval range = range_of(radicand_of(bundle, hit->normal, across, relative_ior));
+  return range.lo > 0 ? Passing::all : range.hi < 0 ? Passing::none : Passing::unknown;
 }
 
 BundlePlane make_form(const RayBundle& bundle, const CsgPlane& plane) {

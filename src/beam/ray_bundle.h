@@ -10,6 +10,7 @@
 //            volumes of four corner rays do not bound the others (docs/beam.md)
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <span>
 
@@ -42,6 +43,10 @@ std::optional<RayBundle> reflect(const RayBundle& bundle, std::span<const BeamSo
 // totally.
 std::optional<RayBundle> refract(const RayBundle& bundle, std::span<const BeamSolid> solids,
                                  const BeamSurface& surface, double relative_ior);
+enum class Passing : std::uint8_t { all, none, unknown };
+// Which rays are refracted, where all others are reflected totally.
+Passing passing_of(const RayBundle& bundle, std::span<const BeamSolid> solids,
+                   const BeamSurface& surface, double relative_ior);
 
 // See PlaneForm and QuadricForm, beam_view.h.
 struct BundlePlane {

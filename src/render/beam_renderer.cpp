@@ -111,6 +111,10 @@ Rgb shade(const Job& job, const BeamPixel& pixel, const PixelSurface& surface,
     other +=
         start.throughput *
         trace_known_sight(job.scene.scene(), job.settings, start.sight, sampler, rays).radiance;
+    for (const SideRay& side : start.side_rays) {
+      other += side.throughput * trace_side_ray(job.scene.scene(), job.settings, side.ray,
+                                                side.depth, sampler, rays);
+    }
   }
   return direct + other * (1.0F / float(count));
 }
@@ -226,7 +230,7 @@ class BeamRenderer final : public Renderer {
     const double least = settings_.rule == BeamRule::corners ? 1.0 / 8 : BeamOptions{}.least_region;
     BeamOptions beam{.least_region = least, .threads = options.threads, .stop = options.stop};
     if (image.max_depth > 0) {
-      beam.is_mirror = [&](const SeenSurface& seen) { return is_mirror(beams, seen); };
+      beam.optics = [&](const SeenSurface& seen) { return optics_of(beams, seen); };
     }
     const std::vector<LightPlace> lights = make_light_places(scene.geometry(), job.lights);
     const auto render_with = [&](const auto& tracer) { return render_tiles(job, tracer, layers); };

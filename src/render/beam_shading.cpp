@@ -1,6 +1,7 @@
 #include "render/beam_shading.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "render/surface_point.h"
 #include "shading/lights.h"
@@ -76,13 +77,17 @@ LightSample sample_beam_light(const LightSet& lights, const BeamLight& light, Ve
 
 }  // namespace
 
-bool is_mirror(const BeamScene& scene, const SeenSurface& seen) {
+Optics optics_of(const BeamScene& scene, const SeenSurface& seen) {
   const PreparedMaterial& material =
       scene.scene().geometry().materials[scene.material_of(seen).index];
-  if (material.textured || material.translucent || material.emissive) return false;
-  if (scene.is_smooth_mesh(seen)) return false;
-  const Bsdf bsdf = make_bsdf(material.factors, Vec3f(0, 0, 1), MediumSide::outside);
-  return is_delta_only(bsdf) && material.factors.transmission == 0;
+  if (material.textured || material.translucent || material.emissive) return {};
+  if (scene.is_smooth_mesh(seen)) return {};
+  const MediumSide side = seen.entering ? MediumSide::outside : MediumSide::inside;
+  const Bsdf bsdf = make_bsdf(material.factors, Vec3f(0, 0, 1), side);
+  if (!is_delta_only(bsdf)) return {};
+  if (material.factors.transmission == 0) return {Optics::Kind::reflects, 1};
+  if (bsdf.share_specular > 0 || bsdf.share_coat > 0) return {};
+  return {Optics::Kind::refracts, 1 / double(bsdf.eta)};
 }
 
 namespace {
@@ -95,20 +100,50 @@ Bsdf bsdf_at(const SurfaceHit& hit, const SurfaceMaterial& material, const Frame
 
 }  // namespace
 
+namespace {
+
+// Snell's law, of unit vectors; along the surface where rounding says that nothing passes.
+Vec3d refracted(Vec3d d, Vec3d n, double relative_ior) {
+  const double cosine = dot(n, d);
+  const Vec3d against = cosine < 0 ? n : -n;
+  const double across = std::abs(cosine) * relative_ior;
+  const double squared = 1 - relative_ior * relative_ior * (1 - cosine * cosine);
+  return normalize(d * relative_ior +
+                   against * (across - std::sqrt(std::max(0.0, squared))));
+}
+
+}  // namespace
+
 MirroredSight make_sight(const BeamScene& scene, const PixelSurface& surface, Vec2d at) {
   const Ray through = ray_through(scene.eye(), at);
   Ray ray{through.origin, normalize(through.direction)};
   MirroredSight out;
-  for (const SeenSurface& mirror : surface.mirrors) {
-    const SurfaceHit hit = scene.hit_at(mirror, ray);
+  int depth = 0;
+  for (const MirrorLink& link : surface.mirrors) {
+    const SurfaceHit hit = scene.hit_at(link.seen, ray);
     std::optional<SurfaceMaterial> storage;
     const SurfaceMaterial& material = material_at(scene.scene(), hit, storage);
     const Frame frame = shading_frame(scene.scene(), hit, material);
-    const auto sample =
-        sample_bsdf(bsdf_at(hit, material, frame, Vec3f(ray.direction)), 0.5F, {0.5F, 0.5F});
-    out.throughput = sample ? out.throughput * sample->weight : Rgb(0.0F);
+    const Bsdf bsdf = bsdf_at(hit, material, frame, Vec3f(ray.direction));
     const Vec3d n(hit.geometric_normal);
-    ray = {Vec3d(hit.position), ray.direction - n * (2 * dot(n, ray.direction))};
+    const Vec3d reflected = ray.direction - n * (2 * dot(n, ray.direction));
+    ++depth;
+    if (bsdf.share_glass > 0) {
+      const Refraction passing = refract_glass(bsdf, bsdf.wo.z);
+      const Rgb reflects = bsdf.glass_reflect * passing.reflectance;
+      if (link.refracted) {
+        out.side_rays.push_back(
+            {leave_surface(hit, Vec3f(reflected)), out.throughput * reflects, depth});
+        out.throughput = out.throughput * bsdf.glass_transmit * (1 - passing.reflectance);
+        ray = {Vec3d(hit.position), refracted(ray.direction, n, link.relative_ior)};
+        continue;
+      }
+      out.throughput = out.throughput * reflects;
+    } else {
+      const auto sample = sample_bsdf(bsdf, 0.5F, {0.5F, 0.5F});
+      out.throughput = sample ? out.throughput * sample->weight : Rgb(0.0F);
+    }
+    ray = {Vec3d(hit.position), reflected};
   }
   KnownSight& sight = out.sight;
   sight.ray.origin = Vec3f(ray.origin);

@@ -5,6 +5,7 @@
 #pragma once
 
 #include <cstdint>
+#include <vector>
 
 #include "beam/beam_tracer.h"
 #include "render/beam_scene.h"
@@ -23,15 +24,23 @@ std::vector<BeamLight> make_beam_lights(const LightSet& lights, int light_beams)
 // Where shadows are to be looked for from.
 LightPlace place_of(const LightSet& lights, const BeamLight& light);
 
-// By way of the surface's mirrors.
+// What glass on the way to a surface reflects, which nothing else shows.
+struct SideRay {
+  TraceRay ray;
+  Rgb throughput;
+  int depth = 0;  // scatterings before
+};
+
+// By way of the surface's mirrors and glass.
 struct MirroredSight {
   KnownSight sight;
   Rgb throughput{1, 1, 1};  // of the mirrors
+  std::vector<SideRay> side_rays;
 };
 MirroredSight make_sight(const BeamScene& scene, const PixelSurface& surface, Vec2d at);
 
-// Does the surface nothing but reflect like a mirror?
-bool is_mirror(const BeamScene& scene, const SeenSurface& seen);
+// Does the surface nothing but reflect like a mirror, or reflect and refract like clear glass?
+Optics optics_of(const BeamScene& scene, const SeenSurface& seen);
 
 Rgb direct_light(const PreparedScene& scene, const std::vector<BeamLight>& lights,
                  const KnownSight& sight, const PixelSurface& surface, PathRays& rays);

@@ -57,6 +57,7 @@ struct Path {
   float passed_distance = 0;
   const KnownSight* known = nullptr;  // until the first vertex is done
   bool skips_area_lights = false;     // the scattering before knows them
+  int first_depth = 0;                // scatterings before the first ray
 
   // Weight of an emitter that BSDF sampling found and light sampling finds with density light_pdf.
   template <class LightPdf>
@@ -247,8 +248,7 @@ PathSample trace(Path& path) {
   const PathSettings& settings = path.settings;
   PathRays& rays = path.rays;
   PathSample result;
-  const int first_depth = path.known != nullptr ? path.known->mirrors : 0;
-  for (int depth = first_depth; path.passes < kMaxPasses;) {
+  for (int depth = path.first_depth; path.passes < kMaxPasses;) {
     const bool is_known = path.known != nullptr && path.passes == 0;
     const std::optional<SurfaceHit> hit = is_known ? path.known->hit : scene.intersect(path.ray);
     rays.total += is_known ? 0 : 1;
@@ -310,8 +310,18 @@ PathSample trace_known_sight(const PreparedScene& scene, const PathSettings& set
                              const KnownSight& sight, Sampler sampler, PathRays& rays) {
   Path path{scene, scene.geometry().lights, settings, sampler, rays, sight.ray};
   path.known = &sight;
+  path.first_depth = sight.mirrors;
   if (sight.mirrors > 0) path.kind = RayKind::scattered;
   return trace(path);
+}
+
+Rgb trace_side_ray(const PreparedScene& scene, const PathSettings& settings, const TraceRay& ray,
+                   int depth, Sampler sampler, PathRays& rays) {
+  if (depth > settings.max_depth) return {};
+  Path path{scene, scene.geometry().lights, settings, sampler, rays, ray};
+  path.first_depth = depth;
+  path.kind = RayKind::scattered;
+  return trace(path).radiance;
 }
 
 }  // namespace arris

@@ -53,5 +53,8 @@ struct KnownSight {
 };
 PathSample trace_known_sight(const PreparedScene& scene, const PathSettings& settings,
                              const KnownSight& sight, Sampler sampler, PathRays& rays);
+// The radiance along a ray that a mirror or glass sends on, after `depth` scatterings.
+Rgb trace_side_ray(const PreparedScene& scene, const PathSettings& settings, const TraceRay& ray,
+                   int depth, Sampler sampler, PathRays& rays);
 
 }  // namespace arris

@@ -31,13 +31,17 @@ BeamScene mirror_scene(CsgRandom& random, int count) {
   return scene;
 }
 
-bool is_mirror_face(const SeenSurface& seen) {
-  return (seen.solid == 0 && seen.face == kTop) || (seen.solid == 1 && seen.face == kFront);
+const Optics kMirror{Optics::Kind::reflects, 1};
+
+Optics mirror_faces(const SeenSurface& seen) {
+  const bool is_mirror =
+      (seen.solid == 0 && seen.face == kTop) || (seen.solid == 1 && seen.face == kFront);
+  return is_mirror ? kMirror : Optics{};
 }
 
-// How many mirrors the ray meets, and what it sees in the end.
+// How many mirrors the ray meets, and glass that it passes, and what it sees in the end.
 using MirroredKey = std::pair<std::size_t, SeenKey>;
-MirroredKey follow(const BeamScene& scene, const IsMirror& is_mirror, Ray ray) {
+MirroredKey follow(const BeamScene& scene, const OpticsOf& optics_of, Ray ray) {
   std::vector<BeamPart> roots;
   for (std::uint32_t i = 0; i < scene.placed.size(); ++i) {
     roots.push_back({i, scene.placed[i].shape->root()});
@@ -46,16 +50,26 @@ MirroredKey follow(const BeamScene& scene, const IsMirror& is_mirror, Ray ray) {
     const std::optional<RaySight> sight = see(scene.placed, roots, ray);
     if (!sight) return {mirrors, key_of(std::nullopt)};
     const SeenSurface& seen = sight->seen;
-    if (mirrors == kMostMirrors || !is_mirror(seen)) return {mirrors, key_of(seen)};
+    const Optics optics = optics_of(seen);
+    if (mirrors == kMostMirrors || optics.kind == Optics::Kind::scatters) {
+      return {mirrors, key_of(seen)};
+    }
     const BeamSolid& solid = scene.placed[seen.solid];
     const Ray own{transform_point(solid.object_from_world, ray.origin),
                   transform_vector(solid.object_from_world, ray.direction)};
     const CsgBoundary boundary{sight->depth, seen.leaf, seen.face, seen.entering};
-    const Vec3d n = normalize(transpose(solid.object_from_world.linear) *
-                              solid.shape->csg().outward_normal(boundary, own));
+    Vec3d n = normalize(transpose(solid.object_from_world.linear) *
+                        solid.shape->csg().outward_normal(boundary, own));
+    const Vec3d d = normalize(ray.direction);
+    if (dot(n, d) > 0) n = -n;
     ray.origin = ray.origin + ray.direction * sight->depth;
-    ray.direction = ray.direction - n * (2 * dot(n, ray.direction));
-    ray.origin = ray.origin + normalize(ray.direction) * 1e-7;
+    ray.direction = d - n * (2 * dot(n, d));
+    const double eta = optics.relative_ior, cosine = -dot(n, d);
+    const double passing = 1 - eta * eta * (1 - cosine * cosine);
+    if (optics.kind == Optics::Kind::refracts && passing > 0) {
+      ray.direction = d * eta + n * (eta * cosine - std::sqrt(passing));
+    }
+    ray.origin = ray.origin + ray.direction * 1e-7;
   }
 }
 
@@ -64,10 +78,10 @@ struct MirrorCounts {
 };
 
 // Holds what the tracer says of each pixel against a grid of rays.
-void check_shares(const BeamScene& scene, const IsMirror& is_mirror, MirrorCounts& counts,
+void check_shares(const BeamScene& scene, const OpticsOf& optics_of, MirrorCounts& counts,
                   const std::string& name) {
   BeamOptions options;
-  options.is_mirror = is_mirror;
+  options.optics = optics_of;
   const BeamTracer tracer(scene.placed, scene.eye, scene.width, scene.height, options);
   for (const BeamTile& tile : tracer.make_tiles()) {
     tracer.trace_tile(tile, [&](const BeamPixel& pixel) {
@@ -75,7 +89,7 @@ void check_shares(const BeamScene& scene, const IsMirror& is_mirror, MirrorCount
       std::map<MirroredKey, double> truth;
       for (int k = 0; k < kGrid * kGrid; ++k) {
         const Vec2d at{pixel.x + (k % kGrid + 0.5) / kGrid, pixel.y + (k / kGrid + 0.5) / kGrid};
-        truth[follow(scene, is_mirror, ray_through(scene.eye, at))] += 1.0 / (kGrid * kGrid);
+        truth[follow(scene, optics_of, ray_through(scene.eye, at))] += 1.0 / (kGrid * kGrid);
       }
       std::map<MirroredKey, std::pair<double, double>> bounds;
       double unknown = 0;
@@ -108,7 +122,7 @@ TEST(beam_mirror, shares_of_what_mirrors_show_hold_what_rays_find) {
   CsgRandom random(31);
   MirrorCounts counts;
   for (int i = 0; i < 12; ++i) {
-    check_shares(mirror_scene(random, 1 + i % 3), is_mirror_face, counts, std::to_string(i));
+    check_shares(mirror_scene(random, 1 + i % 3), mirror_faces, counts, std::to_string(i));
   }
   EXPECT_GT(counts.mirrored, counts.area / 3);  // the scene shows what it is to
   EXPECT_LT(counts.open, counts.area / 20);
@@ -145,11 +159,32 @@ TEST(beam_mirror, shares_of_what_curved_mirrors_show_hold_what_rays_find) {
     MirrorCounts counts;
     for (int i = 0; i < 8; ++i) {
       check_shares(
-          curved_mirror_scene(random, kind), [](const SeenSurface& seen) { return seen.solid == 0; },
-          counts, std::to_string(kind) + "/" + std::to_string(i));
+          curved_mirror_scene(random, kind),
+          [](const SeenSurface& seen) { return seen.solid == 0 ? kMirror : Optics{}; }, counts, std::to_string(kind) + "/" + std::to_string(i));
     }
     EXPECT_GT(counts.mirrored, counts.area / 5);
     EXPECT_LT(counts.open, counts.area / 200);
+  }
+}
+
+// The same solids of glass: through them, and where they reflect totally.
+TEST(beam_mirror, shares_of_what_glass_shows_hold_what_rays_find) {
+  CsgRandom random(33);
+  for (const int kind : {0, 1, 2}) {
+    MirrorCounts counts;
+    for (int i = 0; i < 8; ++i) {
+      const double ior = uniform(random, 1.2, 1.8);
+      check_shares(
+          curved_mirror_scene(random, kind),
+          [&](const SeenSurface& seen) {
+            return seen.solid == 0
+                       ? Optics{Optics::Kind::refracts, seen.entering ? 1 / ior : ior}
+                       : Optics{};
+          },
+          counts, std::to_string(kind) + "/" + std::to_string(i));
+    }
+    EXPECT_GT(counts.mirrored, counts.area / 5);
+    EXPECT_LT(counts.open, counts.area / 20);
   }
 }
 
