@@ -32,8 +32,7 @@ EyeRays mirror_eye(const EyeRays& eye, const WorldPlane& plane) {
 
 }  // namespace
 
-MirrorLooker::MirrorLooker(std::span<const BeamSolid> solids, const EyeRays& eye,
-                           OpticsOf optics)
+MirrorLooker::MirrorLooker(std::span<const BeamSolid> solids, const EyeRays& eye, OpticsOf optics)
     : solids_(solids), eye_(eye), optics_(std::move(optics)) {}
 
 bool MirrorLooker::is_mirror(const LookNode& node) const {
@@ -144,8 +143,7 @@ std::optional<MirrorLink> MirrorLooker::link_of(const LookNode& mirror, const Re
   const std::optional<RayBundle> bundle =
       bundle_of(mirror.mirrors == 0 ? none : lists.chain(mirror.mirrors), rect);
   if (!bundle) return std::nullopt;
-  const Passing passing =
-      passing_of(*bundle, solids_, mirror.seen.surface, optics.relative_ior);
+  const Passing passing = passing_of(*bundle, solids_, mirror.seen.surface, optics.relative_ior);
   if (passing == Passing::unknown) return std::nullopt;
   return MirrorLink{mirror.seen, passing == Passing::all, optics.relative_ior};
 }
@@ -155,9 +153,8 @@ std::vector<BeamPart> MirrorLooker::parts_near(const RayBundle& bundle) const {
   for (std::uint32_t i = 0; i < solids_.size(); ++i) {
     const RayBundle own = map_bundle(solids_[i].object_from_world, bundle);
     const Vec3i origin = ranges_of(own.origin), direction = ranges_of(own.direction);
-    CsgExpression root = solids_[i].shape->root_near([&](const Box3d& box) {
-      return depths_in(box, origin, direction, kInfinity).has_value();
-    });
+    CsgExpression root = solids_[i].shape->root_near(
+        [&](const Box3d& box) { return depths_in(box, origin, direction, kInfinity).has_value(); });
     if (!root.is_decided()) parts.push_back({i, std::move(root)});
   }
   return parts;

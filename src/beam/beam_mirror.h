@@ -107,7 +107,8 @@ class MirrorLooker {
                                                   const Rect& tile) const;
   [[nodiscard]] std::optional<LookTree> look_by_bundle(MirrorLists::List& list, const Rect& rect,
                                                        const Rect& tile) const;
-  [[nodiscard]] std::optional<RayBundle> bundle_of(const MirrorChain& chain, const Rect& rect) const;
+  [[nodiscard]] std::optional<RayBundle> bundle_of(const MirrorChain& chain,
+                                                   const Rect& rect) const;
   // What of all solids the bundle's rays may meet.
   [[nodiscard]] std::vector<BeamPart> parts_near(const RayBundle& bundle) const;
 

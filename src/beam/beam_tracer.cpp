@@ -84,8 +84,7 @@ class BeamTracer::Tracer {
     pixel_looks_ = 0;
     for (const Rect& part : quarters_of(pixel)) visit_part(part, parts, depth_end);
     add_forced_samples(parts);
-    finish_pixel(pixel,
-                 {pixel.x0, pixel.y0, pixel.x0 + smallest_part_, pixel.y0 + smallest_part_});
+    finish_pixel(pixel, {pixel.x0, pixel.y0, pixel.x0 + smallest_part_, pixel.y0 + smallest_part_});
   }
   // Of less than a pixel.
   void visit_part(const Rect& rect, const std::vector<BeamPart>& above, double depth_end) {
@@ -97,8 +96,7 @@ class BeamTracer::Tracer {
     const bool smallest = tree.hopeless || rect.width() <= least_region(parts);
     const bool complete = (tree.complete || smallest) && add_light(tree, rect);
     if (complete || smallest) {
-      const std::vector<EndArea> ends =
-          areas_of(tree, rect, {.with_samples = any_varies(tree)});
+      const std::vector<EndArea> ends = areas_of(tree, rect, {.with_samples = any_varies(tree)});
       // An outline crosses one region after the other: each has its part of the tolerance.
       const double most_open = shared_.options_.tolerance * rect.width() / 2;
       if (smallest || !tree.refines || open_area(ends) <= most_open) {
@@ -125,7 +123,8 @@ class BeamTracer::Tracer {
     double least = options.least_region;
     if (any_whole) least = std::max(least, options.least_open_region);
     if (pixel_looks_ > 4 * options.many_looks) least = std::max(least, options.least_open_region);
-    if (pixel_rays_ > options.many_rays || pixel_looks_ > options.many_looks) least = std::max(least, options.least_crowded_region);
+    if (pixel_rays_ > options.many_rays || pixel_looks_ > options.many_looks)
+      least = std::max(least, options.least_crowded_region);
     return least;
   }
 
@@ -171,16 +170,12 @@ class BeamTracer::Tracer {
     unresolved_.clear();
   }
 
-  // Is it curved, or seen in a curved mirror?
-  [[nodiscard]] bool varies(const LookNode& node) const {
-    const auto is_curved = [](const SeenSurface& seen) { return !seen.surface.is_plane(); };
-    return (node.kind == LookNode::Kind::surface && is_curved(node.seen)) ||
-           (node.mirrors != 0 &&
-            std::ranges::any_of(mirror_lists_.chain(node.mirrors), is_curved, &MirrorLink::seen));
+  // Is it curved, or seen in a mirror, so that rays tell its light?
+  static bool varies(const LookNode& node) {
+    return node.mirrors != 0 ||
+           (node.kind == LookNode::Kind::surface && !node.seen.surface.is_plane());
   }
-  [[nodiscard]] bool any_varies(const LookTree& tree) const {
-    return std::ranges::any_of(tree.nodes, [&](const LookNode& node) { return varies(node); });
-  }
+  static bool any_varies(const LookTree& tree) { return std::ranges::any_of(tree.nodes, varies); }
 
   static double open_area(const std::vector<EndArea>& ends) {
     double open = 0;
@@ -223,7 +218,7 @@ class BeamTracer::Tracer {
       surface.mirror_open = node.mirror_open;
       surface.light_open = node.light_open;
       surface.mirror_number = node.mirrors;
-      if (varies(node) && end.lo < 1) surface.samples = end.samples;
+      if (varies(node)) surface.samples = end.samples;
       add(surface);
     }
   }

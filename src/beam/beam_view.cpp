@@ -108,7 +108,8 @@ ViewFrame make_eye_frame(const EyeRays& eye, const BeamSolid& solid) {
 
 // a: -ha / sa, b: -hb / sb; their difference times sa sb.
 Quadratic plane_before_plane(const PlaneForm& a, const PlaneForm& b, BeamKind kind) {
-  if (kind == BeamKind::parallel) return Quadratic(scaled(b.height, a.slope) - scaled(a.height, b.slope));
+  if (kind == BeamKind::parallel)
+    return Quadratic(scaled(b.height, a.slope) - scaled(a.height, b.slope));
   return Quadratic(scaled(a.slope, b.height) - scaled(b.slope, a.height));
 }
 
@@ -302,7 +303,11 @@ SpaceCell BeamView::bundle_cell(std::uint32_t solid, Interval depths) const {
   for (int k = 0; k < 3; ++k) {
     const TaylorModel o = own.origin[k], d = own.direction[k];
     const Quadratic from(o), along(d);
-    const Quadratic rest{0, 0, 0, from.xx + along.xx * depths, from.xy + along.xy * depths,
+    const Quadratic rest{0,
+                         0,
+                         0,
+                         from.xx + along.xx * depths,
+                         from.xy + along.xy * depths,
                          from.yy + along.yy * depths};
     cell.center[k] = from.c + along.c * z + range_over(rest, kUnitSquare);
     cell.half[0][k] = from.x + along.x * depths;

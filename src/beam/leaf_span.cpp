@@ -322,9 +322,8 @@ class SpanMaker {
     if (!bends_out && (b.discriminant.hi <= 0 || b.half_slope.lo >= 0)) return false;
     if (b.tangents == Sign::negative) return false;
     const Interval sum = b.root - b.half_slope;
-    const Interval depth =
-        intersection(quotient(b.value, {std::max(sum.lo, 0.0), std::max(sum.hi, 0.0)}),
-                     from_base(b, true));
+    const Interval depth = intersection(
+        quotient(b.value, {std::max(sum.lo, 0.0), std::max(sum.hi, 0.0)}), from_base(b, true));
     if (!(depth.lo <= depth_end_) || !(depth.lo <= depth.hi)) return false;
     span_.entering.push_back({depth, surface, face});
     if (b.curvature.hi > 0) {
@@ -337,8 +336,8 @@ class SpanMaker {
       span_.leaving.push_back({far, surface, face});
     }
     const bool crosses = b.tangents == Sign::positive || b.discriminant.lo > 0;
-    const bool ahead =
-        b.half_slope.hi < 0 || (b.tangents == Sign::positive && view_.kind() == BeamKind::from_point);
+    const bool ahead = b.half_slope.hi < 0 ||
+                       (b.tangents == Sign::positive && view_.kind() == BeamKind::from_point);
     needs_quadric_ = !(b.curvature.hi < 0 || (crosses && ahead));
     return true;
   }
@@ -361,9 +360,8 @@ class SpanMaker {
     if (own != half) return add_from_other_half(b, surface, face);
     surface.root = Root::leaving;
     span_.quadric.reset();
-    const Interval depth =
-        quotient(absolute(b.half_slope * Interval(2)),
-                 {std::max(b.curvature.lo, 0.0), std::max(b.curvature.hi, 0.0)});
+    const Interval depth = quotient(absolute(b.half_slope * Interval(2)),
+                                    {std::max(b.curvature.lo, 0.0), std::max(b.curvature.hi, 0.0)});
     if (depth.lo <= depth_end_) span_.leaving.push_back({depth, surface, face});
     return true;
   }
@@ -416,8 +414,7 @@ class SpanMaker {
 }  // namespace
 
 bool begins_in_plane(const BeamView& view, const BeamSurface& plane, Sign height) {
-  return view.starts_on(plane) ||
-         (height == Sign::unknown && view.kind() == BeamKind::from_point);
+  return view.starts_on(plane) || (height == Sign::unknown && view.kind() == BeamKind::from_point);
 }
 
 bool counts_from_mirror(const BeamView& view, const LeafPlace& place) {

@@ -28,7 +28,8 @@ bool starts_on(const RayBundle& bundle, const BeamSurface& surface) {
 
 // Depth at which the rays meet the quadric: from the middle of the roots, which is near, where they lie around it.
 std::optional<TaylorModel> depth_of(const BundleQuadric& q, Root root, bool begin_on_it) {
-  const auto quotient = [](const TaylorModel& a, const TaylorModel& b) -> std::optional<TaylorModel> {
+  const auto quotient = [](const TaylorModel& a,
+                           const TaylorModel& b) -> std::optional<TaylorModel> {
     const std::optional<TaylorModel> inverse = reciprocal(b);
     return inverse ? std::optional(a * *inverse) : std::nullopt;
   };
@@ -148,8 +149,8 @@ std::optional<RayBundle> refract(const RayBundle& bundle, std::span<const BeamSo
   const TaylorModel radicand = radicand_of(bundle, hit->normal, across, relative_ior);
   if (!(range_of(radicand).lo > 0)) return std::nullopt;
   const TaylorModel along = (across * relative_ior + square_root(radicand)) * *inverse;
-  return RayBundle{hit->point,
-                   scaled(bundle.direction, relative_ior) - hit->normal * along, surface};
+  return RayBundle{hit->point, scaled(bundle.direction, relative_ior) - hit->normal * along,
+                   surface};
 }
 
 Passing passing_of(const RayBundle& bundle, std::span<const BeamSolid> solids,
@@ -182,8 +183,8 @@ BundleQuadric make_form(const RayBundle& bundle, const CsgQuadric& quadric) {
   form.base = std::isfinite(base) ? base : 0;
   const ModelVec near = o + scaled(d, form.base);
   form.base_half_slope = dot(near, weighted_d);
-  form.discriminant = squared(form.base_half_slope) -
-                      (weighted_square(near, w) - constant) * form.curvature;
+  form.discriminant =
+      squared(form.base_half_slope) - (weighted_square(near, w) - constant) * form.curvature;
   return form;
 }
 

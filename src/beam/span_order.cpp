@@ -156,8 +156,8 @@ Order order_of_plane_and_root(const BeamView& view, const SpanEnd& plane, const 
   // As the rays begin near the plane: from afar signs are differences of large numbers.
   const double base = middle_depth(view.bundle_plane(s.solid, s.index));
   const BundlePlane p = begun_at(view.bundle_plane(s.solid, s.index), base);
-  const BundleQuadric q = make_form(begun_at(view.bundle_in(t.solid), base),
-                                    view.shape(t.solid).quadrics()[t.index]);
+  const BundleQuadric q =
+      make_form(begun_at(view.bundle_in(t.solid), base), view.shape(t.solid).quadrics()[t.index]);
   return order_of_pair(PlaneAndQuadric<BundlePlane, BundleQuadric>{view, plane, root, p, q, base},
                        oracle);
 }
@@ -296,9 +296,8 @@ Met decide_met(const BeamView& view, const LeafSpan& span, LeafPlace place, Sign
     if (leaf.quadric) {
       const BeamSurface s{place.solid, *leaf.quadric, Root::nearer};
       view.with_quadric(s.solid, s.index, [&](const auto& q) {
-        const Sign start = view.starts_on(s)
-                               ? oracle.ask(key_of(Of::half_slope, s), q.half_slope)
-                               : oracle.ask(key_of(Of::value, s), q.value);
+        const Sign start = view.starts_on(s) ? oracle.ask(key_of(Of::half_slope, s), q.half_slope)
+                                             : oracle.ask(key_of(Of::value, s), q.value);
         if (start != Sign::unknown) oracle.ask(key_of(Of::along, s), q.along);
       });
     }

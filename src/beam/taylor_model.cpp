@@ -45,8 +45,7 @@ TaylorModel series(const TaylorModel& a, double m, double value, double first, d
   const TaylorModel delta = a - constant_model(m);
   TaylorModel sum = delta * first + squared(delta) * second;
   const double far = norms_of(delta).all() + delta.rest;
-  const double size =
-      std::abs(value) + std::abs(first) * far + std::abs(second) * far * far;
+  const double size = std::abs(value) + std::abs(first) * far + std::abs(second) * far * far;
   sum.c += value;
   sum.rest += rest;
   return rounded(sum, size, 16);
@@ -85,9 +84,9 @@ TaylorModel linear_over(const Rect& rect, double c, double per_x, double per_y) 
   a.c = c + per_x * x + per_y * y;
   a.x = per_x * (rect.width() / 2);
   a.y = per_y * (rect.height() / 2);
-  return rounded(a, std::abs(c) + std::abs(per_x * x) + std::abs(per_y * y) + std::abs(a.x) +
-                        std::abs(a.y),
-                 4);
+  return rounded(
+      a, std::abs(c) + std::abs(per_x * x) + std::abs(per_y * y) + std::abs(a.x) + std::abs(a.y),
+      4);
 }
 
 TaylorModel operator+(const TaylorModel& a, const TaylorModel& b) {
@@ -102,8 +101,8 @@ TaylorModel operator-(const TaylorModel& a) {
   return {-a.c, -a.x, -a.y, -a.xx, -a.xy, -a.yy, a.rest};
 }
 TaylorModel operator*(const TaylorModel& a, double s) {
-  const TaylorModel times{a.c * s,  a.x * s,  a.y * s,           a.xx * s,
-                          a.xy * s, a.yy * s, a.rest * std::abs(s)};
+  const TaylorModel times{
+      a.c * s, a.x * s, a.y * s, a.xx * s, a.xy * s, a.yy * s, a.rest * std::abs(s)};
   return rounded(times, norms_of(times).all(), 1);
 }
 
@@ -125,14 +124,14 @@ TaylorModel operator*(const TaylorModel& a, const TaylorModel& b) {
 TaylorModel squared(const TaylorModel& a) {
   const Norms p = norms_of(a);
   const double fourth = p.second * p.second;
-  const TaylorModel square{a.c * a.c + fourth / 2,
-                           2 * a.c * a.x,
-                           2 * a.c * a.y,
-                           2 * a.c * a.xx + a.x * a.x,
-                           2 * (a.c * a.xy + a.x * a.y),
-                           2 * a.c * a.yy + a.y * a.y,
-                           2 * p.all() * a.rest + a.rest * a.rest + 2 * p.first * p.second +
-                               fourth / 2};
+  const TaylorModel square{
+      a.c * a.c + fourth / 2,
+      2 * a.c * a.x,
+      2 * a.c * a.y,
+      2 * a.c * a.xx + a.x * a.x,
+      2 * (a.c * a.xy + a.x * a.y),
+      2 * a.c * a.yy + a.y * a.y,
+      2 * p.all() * a.rest + a.rest * a.rest + 2 * p.first * p.second + fourth / 2};
   return rounded(square, p.all() * p.all(), 4);
 }
 
@@ -157,8 +156,7 @@ std::optional<TaylorModel> reciprocal(const TaylorModel& a) {
   const Interval s(slope);
   const auto rest_at = [&](double x) { return Interval(1) / Interval(x) + s * Interval(x); };
   const double high = std::max(rest_at(range.lo).hi, rest_at(range.hi).hi);
-  const TaylorModel linear =
-      with_interval(a * -slope, {(Interval(2) * square_root(s)).lo, high});
+  const TaylorModel linear = with_interval(a * -slope, {(Interval(2) * square_root(s)).lo, high});
   const double m = a.c;
   if (!(m > 0)) return linear;
   const double far = std::max(m - range.lo, range.hi - m) * (1 + kUlp);

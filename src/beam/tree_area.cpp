@@ -93,7 +93,7 @@ class Integrator {
 
   std::vector<EndArea> run(const Rect& rect) {
     visit(rect, descend(0, rect));
-    if (options_.with_samples && !is_end(descend(0, rect))) add_samples(rect);
+    if (options_.with_samples) add_samples(rect);
     for (std::size_t i = 0; i < of_node_.size(); ++i) {
       of_node_[i].area.node = std::uint32_t(i);
       if (of_node_[i].area.hi > 0) ends_.push_back(of_node_[i].area);
@@ -190,14 +190,18 @@ class Integrator {
     }
   }
 
-  // Of a regular grid, those that are on an end's side of all signs.
+  // Of a regular grid, those that are on an end's side of all signs; a coarser one where all is one end.
   void add_samples(const Rect& rect) {
-    const int side = std::clamp(int(std::ceil(rect.width() * kSampleGrid)), 1, kSampleGrid);
+    const bool is_one = is_end(descend(0, rect));
+    const int most = is_one ? kSampleGrid / 2 : kSampleGrid;
+    const int side = std::clamp(int(std::ceil(rect.width() * most)), 1, most);
     for (int k = 0; k < side * side; ++k) {
       const Vec2d at{rect.x0 + rect.width() * (k % side + 0.5) / side,
                      rect.y0 + rect.height() * (k / side + 0.5) / side};
       const std::uint32_t node = descend(0, {at.x, at.y, at.x, at.y});
-      if (is_end(node)) of_node_[node].area.samples.push_back({at, rect.area()});
+      if (is_end(node)) {
+        of_node_[node].area.samples.push_back({at, rect.area() / (side * side)});
+      }
     }
   }
 

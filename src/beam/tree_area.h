@@ -24,7 +24,7 @@ struct EndArea {
   double lo = 0, hi = 0;
   double estimate = 0;  // estimates of all ends add up to the rectangle
   Vec2d sample;  // in the rectangle, on this end's side of all signs where there is such a piece
-  // Those of a regular grid that are on this end's side, of one weight.
+  // Those of a regular grid that are on this end's side, of one weight; of a coarser one if all is.
   std::vector<AreaSample> samples;
 };
 

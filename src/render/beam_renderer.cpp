@@ -112,8 +112,8 @@ Rgb shade(const Job& job, const BeamPixel& pixel, const PixelSurface& surface,
         start.throughput *
         trace_known_sight(job.scene.scene(), job.settings, start.sight, sampler, rays).radiance;
     for (const SideRay& side : start.side_rays) {
-      other += side.throughput * trace_side_ray(job.scene.scene(), job.settings, side.ray,
-                                                side.depth, sampler, rays);
+      other += side.throughput *
+               trace_side_ray(job.scene.scene(), job.settings, side.ray, side.depth, sampler, rays);
     }
   }
   return direct + other * (1.0F / float(count));

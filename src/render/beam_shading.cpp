@@ -108,8 +108,7 @@ Vec3d refracted(Vec3d d, Vec3d n, double relative_ior) {
   const Vec3d against = cosine < 0 ? n : -n;
   const double across = std::abs(cosine) * relative_ior;
   const double squared = 1 - relative_ior * relative_ior * (1 - cosine * cosine);
-  return normalize(d * relative_ior +
-                   against * (across - std::sqrt(std::max(0.0, squared))));
+  return normalize(d * relative_ior + against * (across - std::sqrt(std::max(0.0, squared))));
 }
 
 }  // namespace

@@ -160,7 +160,8 @@ TEST(beam_mirror, shares_of_what_curved_mirrors_show_hold_what_rays_find) {
     for (int i = 0; i < 8; ++i) {
       check_shares(
           curved_mirror_scene(random, kind),
-          [](const SeenSurface& seen) { return seen.solid == 0 ? kMirror : Optics{}; }, counts, std::to_string(kind) + "/" + std::to_string(i));
+          [](const SeenSurface& seen) { return seen.solid == 0 ? kMirror : Optics{}; }, counts,
+          std::to_string(kind) + "/" + std::to_string(i));
     }
     EXPECT_GT(counts.mirrored, counts.area / 5);
     EXPECT_LT(counts.open, counts.area / 200);
@@ -177,9 +178,8 @@ TEST(beam_mirror, shares_of_what_glass_shows_hold_what_rays_find) {
       check_shares(
           curved_mirror_scene(random, kind),
           [&](const SeenSurface& seen) {
-            return seen.solid == 0
-                       ? Optics{Optics::Kind::refracts, seen.entering ? 1 / ior : ior}
-                       : Optics{};
+            return seen.solid == 0 ? Optics{Optics::Kind::refracts, seen.entering ? 1 / ior : ior}
+                                   : Optics{};
           },
           counts, std::to_string(kind) + "/" + std::to_string(i));
     }
