@@ -8,7 +8,7 @@
 // Guarantee  as that of the look, for surfaces, not for their light. A flat mirror's eye is rounded
 //            (tests/beam/beam_mirror_test.cpp)
 // Limits     at most kMostMirrors in one another. Leaves that are seen as a whole stay open.
-// Cost       flat: one look for each mirror in a region; views and lists are made once for each tile. Curved: regions of
+// Cost       flat: one look for each mirror in a region; views and lists are made once for each tile. Curved: parts of
 //            a pixel and less, where bundles are close enough
 // Source     J.-M. Hasenfratz and D. Ghazanfarpour, "Rendering CSG scenes with general antialiasing", 1996, §3, whose
 //            volumes bound what any surface reflects; P. Heckbert and P. Hanrahan, "Beam Tracing Polygonal Objects",
@@ -89,8 +89,8 @@ class MirrorLooker {
 
   // Does it reflect or refract all light?
   [[nodiscard]] bool is_mirror(const LookNode& node) const;
-  // Replaces mirrors by what is seen in them. False: a smaller rectangle may tell more; mirrors that could not be looked
-  // into stay. Regions looked at are added to `regions`.
+  // Replaces mirrors by what is seen in them. False: a smaller rectangle may tell more; mirrors that could not be
+  // looked into stay. Regions looked at are added to `regions`.
   bool add_mirrors(LookTree& tree, const Rect& rect, MirrorLists& lists,
                    std::uint64_t& regions) const;
 

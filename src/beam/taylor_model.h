@@ -1,6 +1,6 @@
 // taylor_model.h — functions over a part of the picture, as quadratic polynomials and a bounded rest
 // What       A TaylorModel stands for any function that differs from its polynomial by no more than `rest` at every
-//            point of kUnitSquare, whose sides are those of the part of the picture. Sums, products, quotients and roots
+//            point of kUnitSquare, whose sides are those of the part of the picture. Sums, products, quotients, roots
 //            are models again; what is lost, and all rounding, goes into the rest: third order in the size of the part.
 // Guarantee  containment at each point of the square (tests/beam/taylor_model_test.cpp)
 // Cost       a product is about 60 floating-point operations: a sixth of that of intervals' polynomials
