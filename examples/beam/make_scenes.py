@@ -1,10 +1,11 @@
 #!/usr/bin/env python3
-"""make_scenes.py — the three scenes that sampling finds hard
+"""make_scenes.py — scenes that sampling finds hard
 
 Writes  plate.csg, fence.csg, spheres.csg and the .csg files beside them, and a .toml for each scene:
         a plate with 400 holes of 1/4 to 1 pixel; 120 pickets of 0.3 pixel and their shadows; 500 balls of
-        radius 0.2 pixel on a lawn. All at 640x480; seeds are fixed. objects.json says where every small
-        thing is in the picture, in pixels from the upper left corner.
+        radius 0.2 pixel on a lawn; mirrors: a ball and a dish that reflect, and a ball of glass, among wires
+        that are a few tenths of a pixel in them. All at 640x480; seeds are fixed. objects.json says where every
+        small thing of the first three is in the picture, in pixels from the upper left corner.
 Usage   make_scenes.py [FOLDER]
 """
 
@@ -193,9 +194,38 @@ def make_spheres(folder):
     return objects
 
 
+def make_mirrors(folder):
+    camera = Camera([0.8, 4.2, 13], [0, 1.5, 0], 44)
+    dish = block("difference", [box([-4.6, 0, -0.2], [-1.9, 2.7, 1]), sphere([-3.25, 1.35, 1.9], 1.6)])
+    (folder / "mirrors_metal.csg").write_text(sphere([0.3, 1.5, -0.6], 1.5) + "\n" + dish)
+    (folder / "mirrors_glass.csg").write_text(sphere([3.4, 1.2, 1.2], 1.2) + "\n")
+    wires = []
+    for k in range(60):
+        angle = 2 * math.pi * k / 60
+        if abs(angle - math.pi / 2) < 0.55:
+            continue  # where the camera looks in
+        x, z = 9 * math.cos(angle), 9 * math.sin(angle)
+        wires.append(cylinder([x, 0, z], [x, 2.5 + math.sin(5 * angle), z], 0.025))
+    (folder / "mirrors_wires.csg").write_text(block("union", wires))
+    tiles = [box([x, -0.1, z], [x + 2, 0, z + 2]) for x in range(-12, 12, 2) for z in range(-12, 12, 2)
+             if (x + z) % 4 == 0]
+    (folder / "mirrors_tiles.csg").write_text(block("union", tiles))
+    (folder / "mirrors_lawn.csg").write_text(box([-400, -1, -400], [400, -0.1, 400]) + "\n")
+    shiny = ("\n[material.metal]\nbase_color = [0.92, 0.92, 0.94]\nmetallic = 1\nroughness = 0\n"
+             "\n[material.glass]\nbase_color = [0.97, 1, 0.98]\ntransmission = 1\nroughness = 0\nior = 1.5\n")
+    scene = camera.toml().replace("max_depth = 1", "max_depth = 6").replace("[0, 0, 0]", "[0.25, 0.32, 0.42]")
+    (folder / "mirrors.toml").write_text(
+        scene + directional(unit([-0.4, 0.8, 0.45]), 0.8 * math.pi) + shiny +
+        material("wires", [0.8, 0.45, 0.12]) + material("tiles", [0.12, 0.16, 0.26]) +
+        material("lawn", [0.7, 0.7, 0.68]) + item("metal", "mirrors_metal.csg") +
+        item("glass", "mirrors_glass.csg") + item("wires", "mirrors_wires.csg") +
+        item("tiles", "mirrors_tiles.csg") + item("lawn", "mirrors_lawn.csg"))
+
+
 def main():
     folder = Path(sys.argv[1] if len(sys.argv) > 1 else Path(__file__).parent)
     scenes = {"plate": make_plate(folder), "fence": make_fence(folder), "spheres": make_spheres(folder)}
+    make_mirrors(folder)
     (folder / "objects.json").write_text(json.dumps(scenes) + "\n")
 
 
