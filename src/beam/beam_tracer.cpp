@@ -1,19 +1,13 @@
 #include "beam/beam_tracer.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
-#include <map>
-#include <set>
-#include <unordered_map>
 #include <utility>
 
-#include "base/hash.h"
 #include "base/parallel_for.h"
-#include "beam/aimed_points.h"
 #include "beam/lit_regions.h"
-#include "beam/ray_sight.h"
+#include "beam/unresolved_regions.h"
 
 namespace arris {
 namespace {
@@ -24,11 +18,6 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr int kCloserLooks = 4;
 // As long as that leaves at most this part of what was open.
 constexpr double kGain = 0.7;
-
-// Rays that a pixel aims at what was found in it and no ray has met.
-constexpr int kAimedRays = 48;
-// Of the regions that a leaf may be in, so many have a ray aimed at the middle of its part.
-constexpr std::size_t kAimedRegions = 2;
 
 }  // namespace
 
@@ -45,7 +34,14 @@ class BeamTracer::Tracer {
  public:
   Tracer(const BeamTracer& shared, const Rect& tile,
          const std::function<void(const BeamPixel&)>& sink)
-      : shared_(shared), sink_(sink), lists_(tile), mirror_lists_(tile) {}
+      : shared_(shared),
+        sink_(sink),
+        lists_(tile),
+        mirror_lists_(tile),
+        surfaces_(mirror_lists_, shared.shadows_.is_joint() ? 0 : shared.shadows_.light_count()),
+        unresolved_(shared.solids_, shared.eye_, shared.view_, surfaces_) {}
+  Tracer(const Tracer&) = delete;
+  Tracer& operator=(const Tracer&) = delete;
 
   // Of at least a pixel.
   void visit(const Rect& rect, const std::vector<BeamPart>& above, double depth_end) {
@@ -71,7 +67,11 @@ class BeamTracer::Tracer {
     }
   }
 
-  [[nodiscard]] const BeamStats& stats() const { return stats_; }
+  [[nodiscard]] BeamStats stats() const {
+    BeamStats stats = stats_;
+    stats.rays = unresolved_.ray_count();
+    return stats;
+  }
 
  private:
   [[nodiscard]] bool is_stopped() const {
@@ -80,10 +80,10 @@ class BeamTracer::Tracer {
   void visit_parts_of(const Rect& pixel, const std::vector<BeamPart>& parts, double depth_end) {
     clear_pixel();
     smallest_part_ = 1;
-    pixel_rays_ = 0;
+    rays_before_pixel_ = unresolved_.ray_count();
     pixel_looks_ = 0;
     for (const Rect& part : quarters_of(pixel)) visit_part(part, parts, depth_end);
-    add_forced_samples(parts);
+    unresolved_.add_forced_samples(parts);
     finish_pixel(pixel, {pixel.x0, pixel.y0, pixel.x0 + smallest_part_, pixel.y0 + smallest_part_});
   }
   // Of less than a pixel.
@@ -123,7 +123,8 @@ class BeamTracer::Tracer {
     double least = options.least_region;
     if (any_whole) least = std::max(least, options.least_open_region);
     if (pixel_looks_ > 4 * options.many_looks) least = std::max(least, options.least_open_region);
-    if (pixel_rays_ > options.many_rays || pixel_looks_ > options.many_looks)
+    if (unresolved_.ray_count() - rays_before_pixel_ > options.many_rays ||
+        pixel_looks_ > options.many_looks)
       least = std::max(least, options.least_crowded_region);
     return least;
   }
@@ -150,7 +151,7 @@ class BeamTracer::Tracer {
     for (int i = 0; i <= kCloserLooks; ++i) {
       clear_pixel();
       add_ends(tree, areas_of(tree, pixel, options), pixel, parts);
-      const double open = open_area();
+      const double open = surfaces_.open_area();
       if (tree.hopeless || is_certified() || open > kGain * before) break;
       before = open;
       options.tolerance /= 4;
@@ -160,7 +161,7 @@ class BeamTracer::Tracer {
       visit_parts_of(pixel, parts, depth_end);
       return;
     }
-    add_forced_samples(parts);
+    unresolved_.add_forced_samples(parts);
     add_lit_shares_of_pixel(tree, pixel);
     finish_pixel(pixel, region);
   }
@@ -182,20 +183,8 @@ class BeamTracer::Tracer {
     for (const EndArea& end : ends) open += end.hi - end.lo;
     return open;
   }
-  [[nodiscard]] double open_area() const {
-    double open = 0;
-    for (const PixelSurface& s : surfaces_) open += s.hi - s.lo;
-    return open;
-  }
   [[nodiscard]] bool is_certified() const {
-    return std::ranges::all_of(surfaces_, [&](const PixelSurface& s) {
-      return s.hi - s.lo <= shared_.options_.tolerance &&
-             !((s.mirror_open || s.light_open) && s.hi > shared_.options_.tolerance) &&
-             std::ranges::none_of(s.lit_shares, [&](const LitShare& share) {
-               return share.hi - share.lo > shared_.options_.tolerance ||
-                      share.doubtful > shared_.options_.tolerance;
-             });
-    });
+    return surfaces_.is_certified(shared_.options_.tolerance);
   }
 
   void add_ends(const LookTree& tree, const std::vector<EndArea>& ends, const Rect& rect,
@@ -203,7 +192,7 @@ class BeamTracer::Tracer {
     for (const EndArea& end : ends) {
       const LookNode& node = tree.nodes[end.node];
       if (node.kind == LookNode::Kind::unknown) {
-        add_unknown(tree, node, end, rect, parts);
+        unresolved_.add(tree, end, rect, parts);
         continue;
       }
       PixelSurface surface;
@@ -219,7 +208,7 @@ class BeamTracer::Tracer {
       surface.light_open = node.light_open;
       surface.mirror_number = node.mirrors;
       if (varies(node)) surface.samples = end.samples;
-      add(surface);
+      surfaces_.add(surface);
     }
   }
 
@@ -270,7 +259,7 @@ class BeamTracer::Tracer {
       surface.seen = node.seen;
       surface.mirror_number = node.mirrors;
       surface.mirror_open = node.mirror_open;
-      PixelSurface& entry = entry_of(surface);
+      PixelSurface& entry = surfaces_.entry_of(surface);
       entry.lit_shares.resize(shared_.shadows_.light_count());
       LitShare& share = entry.lit_shares[light];
       if (node.light_open) {
@@ -285,238 +274,13 @@ class BeamTracer::Tracer {
     }
   }
 
-  // Anything in the window may be seen, or nothing; a ray says what to take for it, until others are aimed.
-  void add_unknown(const LookTree& tree, const LookNode& node, const EndArea& end, const Rect& rect,
-                   const std::vector<BeamPart>& parts) {
-    PixelSurface open;
-    open.hi = end.hi;
-    open.sample = end.sample;
-    open.sample_weight = 0;
-    add(open);
-    for (std::uint32_t i = 0; i < node.count; ++i) {
-      add_candidate(tree.candidates[node.first + i], end, rect);
-    }
-    if (node.count == 0) {
-      for (const BeamPart& part : parts) add_all_faces(part, end, rect);
-    }
-    const std::optional<SeenSurface> seen = seen_by_ray(parts, end.sample);
-    add_estimate(seen, end.sample, end.estimate);
-    Unresolved& region = unresolved_.emplace_back();
-    region = {rect, seen, end.estimate, {}};
-    for (std::uint32_t i = 0; i < node.count; ++i) {
-      const SeenSurface& candidate = tree.candidates[node.first + i];
-      region.leaves.push_back({candidate.solid, candidate.leaf});
-    }
-    std::ranges::sort(region.leaves);
-    region.leaves.erase(std::ranges::unique(region.leaves).begin(), region.leaves.end());
-  }
-
-  // It is seen nowhere but in its leaf's window.
-  void add_candidate(const SeenSurface& seen, const EndArea& end, const Rect& rect) {
-    PixelSurface open;
-    open.seen = seen;
-    open.hi = std::min(end.hi, part_in_window(shared_.view_, {seen.solid, seen.leaf}, rect).area());
-    open.sample = end.sample;
-    open.sample_weight = 0;
-    add(open);
-  }
-
-  void add_all_faces(const BeamPart& part, const EndArea& end, const Rect& rect) {
-    for (const std::uint32_t leaf : part.expression.leaves()) {
-      const BeamShape& shape = *shared_.solids_[part.solid].shape;
-      const ConvexLeaf* convex = shape.convex(leaf);
-      const std::size_t faces =
-          convex == nullptr ? 1 : convex->planes.size() + (convex->quadric ? 1 : 0);
-      for (std::uint32_t face = 0; face < faces; ++face) {
-        for (const bool entering : {true, false}) {
-          const std::uint32_t number = shape.is_whole(leaf) ? kAnyFace : face;
-          add_candidate({part.solid, leaf, number, {}, entering}, end, rect);
-        }
-      }
-    }
-  }
-
-  void add_estimate(const std::optional<SeenSurface>& seen, Vec2d sample, double estimate) {
-    PixelSurface surface;
-    surface.seen = seen;
-    surface.sample = sample;
-    surface.estimate = surface.sample_weight = estimate;
-    add(surface);
-  }
-
-  // What was found shows: rays are aimed at the leaves that may be seen in regions that stayed unknown and that no
-  // ray has met. Those they meet take a part of what the region's own ray stood for.
-  void add_forced_samples(const std::vector<BeamPart>& parts) {
-    if (unresolved_.empty()) return;
-    std::set<LeafName> done;  // met, or tried
-    for (const PixelSurface& s : surfaces_) {
-      if (s.seen && s.estimate > 0) done.insert({s.seen->solid, s.seen->leaf});
-    }
-    int left = kAimedRays;
-    for (std::size_t i = 0; i < surfaces_.size() && left > 0; ++i) {  // it grows
-      const PixelSurface& s = surfaces_[i];
-      if (!s.seen || s.mirror_number != 0 || !(s.hi > 0)) continue;
-      const LeafPlace leaf{s.seen->solid, s.seen->leaf};
-      if (!done.insert({leaf.solid, leaf.leaf}).second) continue;
-      const auto try_aims = [&](const std::vector<Aim>& aims) {
-        for (const Aim& aim : aims) {
-          if (left-- <= 0) return true;
-          const std::optional<SeenSurface> seen = force(aim, parts);
-          if (!seen) continue;
-          done.insert({seen->solid, seen->leaf});
-          if (seen->solid == leaf.solid && seen->leaf == leaf.leaf) return true;
-        }
-        return false;
-      };
-      if (!try_aims(aims_at(leaf))) try_aims(aims_at_contacts(leaf, left));
-    }
-  }
-
-  struct Aim {
-    std::size_t region = 0;  // of unresolved_
-    Vec2d at;
-  };
-  static bool holds(const Rect& rect, Vec2d p) {
-    return p.x >= rect.x0 && p.x <= rect.x1 && p.y >= rect.y0 && p.y <= rect.y1;
-  }
-  [[nodiscard]] std::vector<Aim> aims_at(const LeafPlace& place) const {
-    std::vector<Aim> aims;
-    const std::vector<Vec2d> points =
-        aimed_points(shared_.eye_, shared_.solids_[place.solid], place.leaf);
-    std::vector<std::pair<double, Aim>> widest;  // by minus the area
-    for (std::size_t i = 0; i < unresolved_.size(); ++i) {
-      const Rect part = part_in_window(shared_.view_, place, unresolved_[i].rect);
-      if (!(part.area() > 0)) continue;
-      for (const Vec2d& p : points) {
-        if (holds(part, p)) aims.push_back({i, p});
-      }
-      widest.push_back({-part.area(), {i, {part.middle_x(), part.middle_y()}}});
-    }
-    std::ranges::stable_sort(widest, {}, &std::pair<double, Aim>::first);
-    widest.resize(std::min(widest.size(), kAimedRegions));
-    for (const auto& [area, aim] : widest) aims.push_back(aim);
-    return aims;
-  }
-
-  // Where the leaf changes its order with another that is unknown in one region with it. Each try costs a ray.
-  [[nodiscard]] std::vector<Aim> aims_at_contacts(const LeafPlace& place, int& left) const {
-    std::map<LeafName, std::vector<std::size_t>> regions;  // by the other leaf
-    for (std::size_t i = 0; i < unresolved_.size(); ++i) {
-      const std::vector<LeafName>& leaves = unresolved_[i].leaves;
-      if (!std::ranges::binary_search(leaves, LeafName{place.solid, place.leaf})) continue;
-      for (const LeafName& leaf : leaves) regions[leaf].push_back(i);
-    }
-    std::vector<Aim> aims;
-    for (const auto& [leaf, of_leaf] : regions) {
-      const LeafPlace other{leaf.first, leaf.second};
-      if (leaf == LeafName{place.solid, place.leaf} || left-- <= 0) continue;
-      const Rect& start = unresolved_[of_leaf[of_leaf.size() / 2]].rect;
-      for (const Vec2d& p :
-           points_of_contact(shared_.solids_, shared_.eye_, {place, other}, start)) {
-        const auto at = std::ranges::find_if(
-            of_leaf, [&](std::size_t i) { return holds(unresolved_[i].rect, p); });
-        if (at != of_leaf.end()) aims.push_back({*at, p});
-      }
-    }
-    return aims;
-  }
-
-  // A surface that had no share has half of what its leaf may fill of the region from now on, if the ray meets it.
-  std::optional<SeenSurface> force(const Aim& aim, const std::vector<BeamPart>& parts) {
-    Unresolved& region = unresolved_[aim.region];
-    const std::optional<SeenSurface> seen = seen_by_ray(parts, aim.at);
-    if (!seen) return seen;
-    PixelSurface surface;
-    surface.seen = seen;
-    if (entry_of(surface).estimate > 0) return seen;
-    const Rect part = part_in_window(shared_.view_, {seen->solid, seen->leaf}, region.rect);
-    const double share = std::min(part.area(), region.left) / 2;
-    region.left -= share;
-    add_estimate(seen, aim.at, share);
-    surface.seen = region.seen;
-    surface.estimate = -share;
-    add(surface);
-    return seen;
-  }
-
-  std::optional<SeenSurface> seen_by_ray(const std::vector<BeamPart>& parts, Vec2d at) {
-    ++stats_.rays;
-    ++pixel_rays_;
-    const std::optional<RaySight> sight =
-        see(shared_.solids_, parts, ray_through(shared_.eye_, at));
-    return sight ? std::optional(sight->seen) : std::nullopt;
-  }
-
-  // Surfaces are the same by it; ~0 three times: nothing is seen.
-  using Key = std::array<std::uint32_t, 6>;
-  static Key key_of(const PixelSurface& s) {
-    constexpr std::uint32_t kNone = ~std::uint32_t{0};
-    const std::uint32_t mirrors =
-        s.mirror_number * 4 + (s.mirror_open ? 2 : 0) + (s.light_open ? 1 : 0);
-    if (!s.seen) return {kNone, kNone, kNone, s.lit, s.lit_known, mirrors};
-    const std::uint32_t face = s.seen->face * 2 + (s.seen->entering ? 1 : 0);
-    return {s.seen->solid, s.seen->leaf, face, s.lit, s.lit_known, mirrors};
-  }
-  struct KeyHash {
-    std::size_t operator()(const Key& key) const {
-      std::uint32_t hash = 0;
-      for (const std::uint32_t part : key) hash = hash_combine(hash, part);
-      return hash;
-    }
-  };
-
-  // The entry of the surface; a new one has nothing in it.
-  PixelSurface& entry_of(const PixelSurface& surface) {
-    constexpr std::size_t kFewSurfaces = 16;  // of more, an index is faster
-    const Key key = key_of(surface);
-    if (surfaces_.size() <= kFewSurfaces) {
-      index_.clear();
-      for (PixelSurface& known : surfaces_) {
-        if (key_of(known) == key) return known;
-      }
-    } else {
-      if (index_.empty()) {
-        for (std::uint32_t i = 0; i < surfaces_.size(); ++i) index_[key_of(surfaces_[i])] = i;
-      }
-      const auto [at, is_new] = index_.try_emplace(key, std::uint32_t(surfaces_.size()));
-      if (!is_new) return surfaces_[at->second];
-    }
-    PixelSurface& added = surfaces_.emplace_back();
-    added.seen = surface.seen;
-    added.lit = surface.lit;
-    added.lit_known = surface.lit_known;
-    added.mirror_open = surface.mirror_open;
-    added.light_open = surface.light_open;
-    added.mirror_number = surface.mirror_number;
-    if (surface.mirror_number != 0) added.mirrors = mirror_lists_.chain(surface.mirror_number);
-    return added;
-  }
-
-  void add(const PixelSurface& surface) {
-    PixelSurface& known = entry_of(surface);
-    known.lo += surface.lo;
-    known.hi += surface.hi;
-    known.estimate += surface.estimate;
-    if (!shared_.shadows_.is_joint()) {
-      known.lit_shares.resize(shared_.shadows_.light_count());
-      for (LitShare& share : known.lit_shares) share.open += surface.estimate;
-    }
-    known.samples.insert(known.samples.end(), surface.samples.begin(), surface.samples.end());
-    if (surface.sample_weight > known.sample_weight) {
-      known.seen = surface.seen;  // with the root that is seen there
-      known.sample = surface.sample;
-      known.sample_weight = surface.sample_weight;
-    }
-  }
-
   void finish_pixel(const Rect& pixel, const Rect& region) {
     BeamPixel out;
     out.x = int(pixel.x0);
     out.y = int(pixel.y0);
     double nothing_lo = 0, nothing_hi = 0, certain = 0;
-    for (PixelSurface& s : surfaces_) {
-      s.lo = std::clamp(s.lo, 0.0, 1.0);
-      s.hi = std::clamp(s.hi, 0.0, 1.0);
+    surfaces_.clamp_bounds();
+    for (const PixelSurface& s : surfaces_.entries()) {
       certain += s.lo;
       if (s.seen || s.mirror_number != 0) continue;
       nothing_lo += s.lo;
@@ -527,21 +291,12 @@ class BeamTracer::Tracer {
     out.certified = is_certified();
     out.region_side = region.width();
     out.begins_region = pixel.x0 == region.x0 || pixel.y0 == region.y0;
-    out.surfaces = surfaces_;
+    out.surfaces = surfaces_.entries();
     ++stats_.pixels;
     stats_.uncertified_pixels += out.certified ? 0 : 1;
     stats_.certified_area += std::min(certain, 1.0);
     sink_(out);
   }
-
-  using LeafName = std::pair<std::uint32_t, std::uint32_t>;
-  // A region in which something stayed unknown.
-  struct Unresolved {
-    Rect rect;
-    std::optional<SeenSurface> seen;  // by the ray that stands in
-    double left = 0;                  // of what that stands for
-    std::vector<LeafName> leaves;     // that are put in order there, ascending; none: too many
-  };
 
   const BeamTracer& shared_;
   const std::function<void(const BeamPixel&)>& sink_;
@@ -549,12 +304,11 @@ class BeamTracer::Tracer {
   MirrorLists mirror_lists_;
   LitRegions lit_regions_;  // of the region under way
   double smallest_part_ = 1;
-  std::uint32_t pixel_rays_ = 0;   // that the pixel has taken so far
-  std::uint64_t pixel_looks_ = 0;  // into mirrors
-  std::vector<PixelSurface> surfaces_;
-  std::vector<Unresolved> unresolved_;                     // of the pixel
-  std::unordered_map<Key, std::uint32_t, KeyHash> index_;  // of surfaces_, where they are many
-  BeamStats stats_;
+  std::uint64_t rays_before_pixel_ = 0;  // of unresolved_
+  std::uint64_t pixel_looks_ = 0;        // into mirrors
+  PixelSurfaces surfaces_;               // of the pixel
+  UnresolvedRegions unresolved_;
+  BeamStats stats_;  // without rays
 };
 
 BeamTracer::BeamTracer(std::span<const BeamSolid> solids, const EyeRays& eye, int width_px,

@@ -1,8 +1,9 @@
 // beam_tracer.h — which surfaces each pixel of a picture shows, and how much of each
 // What       The picture is split in four until a region's beam sees a tree of few signs (region_look.h); the tree's
-//            ends are measured in each pixel (tree_area.h). Regions hand the leaves that their beams may meet, and the
-//            depth beyond which nothing is seen, to their parts. What is still unknown in the smallest regions is
-//            sampled by a ray and left open between its bounds.
+//            ends are measured in each pixel (tree_area.h) and added up (pixel_surfaces.h). Regions hand the leaves
+//            that their beams may meet, and the depth beyond which nothing is seen, to their parts. What is still
+//            unknown in the smallest regions is sampled by rays and left open between its bounds
+//            (unresolved_regions.h).
 // Guarantee  the area of every surface in every pixel lies within its [lo, hi]; a surface that is not listed is not
 //            there. Both but for rounding in the sums of areas (tests/beam/beam_tracer_test.cpp: dense sampling)
 // Limits     the outlines of leaves that are not convex (see convex_solid.h for those that can be cut) stay open
@@ -14,39 +15,16 @@
 #include <atomic>
 #include <cstdint>
 #include <functional>
-#include <optional>
 #include <span>
 #include <vector>
 
 #include "beam/beam_mirror.h"
 #include "beam/beam_shadow.h"
 #include "beam/beam_view.h"
+#include "beam/pixel_surfaces.h"
 #include "beam/region_look.h"
-#include "beam/tree_area.h"
 
 namespace arris {
-
-// The part of a pixel's surface that a light reaches, in parts of the pixel.
-struct LitShare {
-  double lo = 0, hi = 0, estimate = 0;
-  double open = 0;      // where it is not known, which the estimate leaves out
-  double doubtful = 0;  // of that, where it was looked for
-};
-
-// What a pixel shows; nothing: what is behind all solids.
-struct PixelSurface {
-  std::optional<SeenSurface> seen;
-  std::uint32_t lit = 0, lit_known = 0;  // by light; see beam_shadow.h
-  std::vector<LitShare> lit_shares;  // by light, where lights are not looked at jointly; else empty
-  double lo = 0, hi = 0, estimate = 0;  // parts of the pixel; estimates add up to 1
-  Vec2d sample;                         // a point of the picture where it is seen, or may be
-  double sample_weight = -1;            // the area that the sample stands for
-  std::vector<AreaSample> samples;      // more of them, of curved surfaces
-  std::uint32_t mirror_number = 0;      // LookNode::mirrors
-  MirrorChain mirrors;                  // in which it is seen
-  bool mirror_open = false;             // a mirror, and what is seen in it is not known
-  bool light_open = false;              // flat, and whether a light reaches it is not known
-};
 
 struct BeamPixel {
   int x = 0, y = 0;
