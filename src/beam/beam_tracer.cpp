@@ -81,7 +81,7 @@ class BeamTracer::Tracer {
     clear_pixel();
     smallest_part_ = 1;
     rays_before_pixel_ = unresolved_.ray_count();
-    pixel_looks_ = 0;
+    looks_before_pixel_ = stats_.regions;
     for (const Rect& part : quarters_of(pixel)) visit_part(part, parts, depth_end);
     unresolved_.add_forced_samples(parts);
     finish_pixel(pixel, {pixel.x0, pixel.y0, pixel.x0 + smallest_part_, pixel.y0 + smallest_part_});
@@ -122,10 +122,12 @@ class BeamTracer::Tracer {
     const BeamOptions& options = shared_.options_;
     double least = options.least_region;
     if (any_whole) least = std::max(least, options.least_open_region);
-    if (pixel_looks_ > 4 * options.many_looks) least = std::max(least, options.least_open_region);
-    if (unresolved_.ray_count() - rays_before_pixel_ > options.many_rays ||
-        pixel_looks_ > options.many_looks)
+    const std::uint64_t looks = stats_.regions - looks_before_pixel_;
+    const std::uint64_t rays = unresolved_.ray_count() - rays_before_pixel_;
+    if (rays > options.many_rays || looks > options.many_looks) {
       least = std::max(least, options.least_crowded_region);
+    }
+    if (looks > 4 * options.many_looks) least = std::max(least, options.least_open_region);
     return least;
   }
 
@@ -133,10 +135,7 @@ class BeamTracer::Tracer {
   bool add_light(LookTree& tree, const Rect& rect) {
     const bool shadows = shared_.shadows_.add_shadows(
         tree, rect, lists_, stats_.regions, [&](const LookNode& node) { return is_unlit(node); });
-    std::uint64_t looks = 0;
-    const bool mirrored = shared_.mirrors_.add_mirrors(tree, rect, mirror_lists_, looks);
-    pixel_looks_ += looks;
-    stats_.regions += looks;
+    const bool mirrored = shared_.mirrors_.add_mirrors(tree, rect, mirror_lists_, stats_.regions);
     return mirrored && shadows;
   }
   [[nodiscard]] bool is_unlit(const LookNode& node) const {
@@ -304,9 +303,9 @@ class BeamTracer::Tracer {
   MirrorLists mirror_lists_;
   LitRegions lit_regions_;  // of the region under way
   double smallest_part_ = 1;
-  std::uint64_t rays_before_pixel_ = 0;  // of unresolved_
-  std::uint64_t pixel_looks_ = 0;        // into mirrors
-  PixelSurfaces surfaces_;               // of the pixel
+  std::uint64_t rays_before_pixel_ = 0;   // of unresolved_
+  std::uint64_t looks_before_pixel_ = 0;  // of stats_.regions
+  PixelSurfaces surfaces_;                // of the pixel
   UnresolvedRegions unresolved_;
   BeamStats stats_;  // without rays
 };
