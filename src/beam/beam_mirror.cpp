@@ -24,6 +24,17 @@ WorldPlane to_world(const BeamSolid& solid, const CsgPlane& plane) {
   return {normal * scale, d * scale};
 }
 
+// A mesh by itself is entered wherever it is met. Do the rays come from where the facet's corners turn counter-clockwise?
+std::optional<bool> from_outside(const RayBundle& bundle, const BeamSolid& solid,
+                                 const Facet& facet) {
+  const BundlePlane form = make_form(map_bundle(solid.object_from_world, bundle),
+                                     solid.shape->planes()[facet.plane.plane]);
+  const Interval slope = range_of(form.slope), height = range_of(form.height);
+  const bool towards = slope.hi < 0 || height.lo > 0, away = slope.lo > 0 || height.hi < 0;
+  if (towards == away) return std::nullopt;
+  return towards != facet.plane.flipped;
+}
+
 EyeRays mirror_eye(const EyeRays& eye, const WorldPlane& plane) {
   const auto turn = [&](Vec3d v) { return v - plane.normal * (2 * dot(plane.normal, v)); };
   return {turn(eye.position) + plane.normal * (2 * plane.d), turn(eye.corner), turn(eye.step_x),
@@ -137,15 +148,23 @@ std::optional<RayBundle> MirrorLooker::bundle_of(const MirrorChain& chain, const
 
 std::optional<MirrorLink> MirrorLooker::link_of(const LookNode& mirror, const Rect& rect,
                                                 const MirrorLists& lists) const {
-  const Optics optics = optics_(mirror.seen);
-  if (optics.kind == Optics::Kind::reflects) return MirrorLink{mirror.seen, false, 1};
+  SeenSurface seen = mirror.seen;
+  if (optics_(seen).kind == Optics::Kind::reflects) return MirrorLink{seen, false, 1};
   const MirrorChain none;
   const std::optional<RayBundle> bundle =
       bundle_of(mirror.mirrors == 0 ? none : lists.chain(mirror.mirrors), rect);
   if (!bundle) return std::nullopt;
-  const Passing passing = passing_of(*bundle, solids_, mirror.seen.surface, optics.relative_ior);
+  const BeamShape& shape = *solids_[seen.solid].shape;
+  if (shape.is_mesh()) {
+    const std::optional<bool> outside =
+        from_outside(*bundle, solids_[seen.solid], *shape.facet(seen.leaf));
+    if (!outside) return std::nullopt;
+    seen.entering = *outside;
+  }
+  const Optics optics = optics_(seen);
+  const Passing passing = passing_of(*bundle, solids_, seen.surface, optics.relative_ior);
   if (passing == Passing::unknown) return std::nullopt;
-  return MirrorLink{mirror.seen, passing == Passing::all, optics.relative_ior};
+  return MirrorLink{seen, passing == Passing::all, optics.relative_ior};
 }
 
 std::vector<BeamPart> MirrorLooker::parts_near(const RayBundle& bundle) const {
@@ -163,8 +182,8 @@ std::vector<BeamPart> MirrorLooker::parts_near(const RayBundle& bundle) const {
 std::uint32_t MirrorLooker::list_for(std::uint32_t mirrors, const MirrorLink& link,
                                      MirrorLists& lists) const {
   const SeenSurface& seen = link.seen;
-  const MirrorLists::Key key{mirrors,   seen.solid,        seen.leaf,
-                             seen.face, seen.surface.root, link.refracted};
+  const MirrorLists::Key key{mirrors,           seen.solid,    seen.leaf,     seen.face,
+                             seen.surface.root, seen.entering, link.refracted};
   const auto known = lists.known_.find(key);
   if (known != lists.known_.end()) return known->second;
   MirrorLists::List list;

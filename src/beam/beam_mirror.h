@@ -75,10 +75,10 @@ class MirrorLists {
     std::vector<Level> levels;  // each within the one before; of bundles
   };
   using Key = std::tuple<std::uint32_t, std::uint32_t, std::uint32_t, std::uint32_t,
-                         BeamSurface::Root, bool>;
+                         BeamSurface::Root, bool, bool>;
   Rect tile_;
   std::vector<List> lists_;
-  // Mirrors so far, solid, leaf, face, root, refracted: the list's number + 1.
+  // Mirrors so far, solid, leaf, face, root, entering, refracted: the list's number + 1.
   std::map<Key, std::uint32_t> known_;
 };
 
