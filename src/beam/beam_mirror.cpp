@@ -24,7 +24,8 @@ WorldPlane to_world(const BeamSolid& solid, const CsgPlane& plane) {
   return {normal * scale, d * scale};
 }
 
-// A mesh by itself is entered wherever it is met. Do the rays come from where the facet's corners turn counter-clockwise?
+// A mesh by itself is entered wherever it is met. Do the rays come from where the facet's corners turn
+// counter-clockwise?
 std::optional<bool> from_outside(const RayBundle& bundle, const BeamSolid& solid,
                                  const Facet& facet) {
   const BundlePlane form = make_form(map_bundle(solid.object_from_world, bundle),
