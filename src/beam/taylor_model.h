@@ -55,6 +55,6 @@ Vec3<Interval> ranges_of(const ModelVec& v);
 
 // A polynomial over the square, of which no coefficient but c is uncertain, as one over the picture; valid in the
 // rectangle that the square stands for.
-Quadratic on_picture(const Quadratic& a, const Rect& rect);
+Quadratic on_picture(const Quadratic& q, const Rect& rect);
 
 }  // namespace arris
