@@ -51,7 +51,7 @@ struct BeamOptions {
   double least_region = 1.0 / 64;          // of a pixel's side
   double least_crowded_region = 1.0 / 16;  // in a pixel that has taken
   std::uint32_t many_rays = 256;           // so many rays already: one edge takes fewer
-  std::uint32_t many_looks = 256;  // or so many looks; after four times as many, least_open_region
+  std::uint32_t many_looks = 1024;  // or so many looks; after four times as many, least_open_region
   double least_shadow_region = 1.0 / 8;  // where lights are not looked at jointly
   double least_open_region = 1.0 / 8;  // where a leaf that is not convex is among what may be seen
   int tile_px = 16;                    // a power of two

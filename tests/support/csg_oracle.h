@@ -207,8 +207,8 @@ inline CsgPrimitive random_primitive(CsgRandom& random, int kind) {
       return CsgSphere{uniform(random, 0.5, 1)};
     case 1:
       return CsgBox{
-          -Vec3d(uniform(random, 0.3, 1), uniform(random, 0.3, 1), uniform(random, 0.3, 1)),
-          Vec3d(uniform(random, 0.3, 1), uniform(random, 0.3, 1), uniform(random, 0.3, 1))};
+          -Vec3d{uniform(random, 0.3, 1), uniform(random, 0.3, 1), uniform(random, 0.3, 1)},
+          Vec3d{uniform(random, 0.3, 1), uniform(random, 0.3, 1), uniform(random, 0.3, 1)}};
     case 2: {
       const double low = uniform(random, 0.1, 1);
       const double high[] = {low, 0, uniform(random, 0.1, 1)};
