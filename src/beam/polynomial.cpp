@@ -82,14 +82,19 @@ Interval range_over(const Linear& p, const Rect& rect) {
   return p.c + p.x * Interval(rect.x0, rect.x1) + p.y * Interval(rect.y0, rect.y1);
 }
 
+Interval value_at(const Quadratic& p, double x, double y) {
+  return (Ball(p.c) + (Ball(p.x) + Ball(p.xx) * x + Ball(p.xy) * y) * x +
+          (Ball(p.y) + Ball(p.yy) * y) * y)
+      .to_interval();
+}
+
 Interval range_over(const Quadratic& p, const Rect& rect) {
   const Centered c = center(p, rect);
   return c.value + parabola_range(c.xx, c.dx) + parabola_range(c.yy, c.dy) + symmetric(c.xy);
 }
 
 bool is_noise(const Quadratic& p, const Rect& rect) {
-  const double x = rect.middle_x(), y = rect.middle_y();
-  return range_over(p, rect).width() <= 4 * range_over(p, {x, y, x, y}).width();
+  return range_over(p, rect).width() <= 4 * value_at(p, rect.middle_x(), rect.middle_y()).width();
 }
 
 namespace {

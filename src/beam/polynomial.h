@@ -73,6 +73,7 @@ inline Quadratic squared(const Linear& a) {
 
 Interval range_over(const Linear& p, const Rect& rect);
 Interval range_over(const Quadratic& p, const Rect& rect);
+Interval value_at(const Quadratic& p, double x, double y);
 
 // Are all its values over the rectangle rounding? Cutting the rectangle then tells no more.
 bool is_noise(const Quadratic& p, const Rect& rect);

@@ -124,6 +124,17 @@ class Integrator {
     return node;
   }
 
+  [[nodiscard]] std::uint32_t descend_at(Vec2d p) const {
+    std::uint32_t node = 0;
+    while (!is_end(node)) {
+      const LookNode& n = tree_.nodes[node];
+      const Sign sign = sign_of(value_at(n.polynomial, p.x, p.y));
+      if (sign == Sign::unknown) break;
+      node = sign == Sign::negative ? n.negative : n.positive;
+    }
+    return node;
+  }
+
   // Is one of the signs that are open in the rectangle more than rounding?
   [[nodiscard]] bool helps_to_cut(const Rect& rect, std::uint32_t node) const {
     node = descend(node, rect);
@@ -198,7 +209,7 @@ class Integrator {
     for (int k = 0; k < side * side; ++k) {
       const Vec2d at{rect.x0 + rect.width() * (k % side + 0.5) / side,
                      rect.y0 + rect.height() * (k / side + 0.5) / side};
-      const std::uint32_t node = descend(0, {at.x, at.y, at.x, at.y});
+      const std::uint32_t node = descend_at(at);
       if (is_end(node)) {
         of_node_[node].area.samples.push_back({at, rect.area() / (side * side)});
       }
