@@ -171,7 +171,7 @@ std::optional<TaylorModel> reciprocal(const TaylorModel& a) {
 TaylorModel square_root(const TaylorModel& a) {
   const Interval range = range_of(a);
   const double low = std::max(range.lo, 0.0);
-  if (!(range.hi > 0)) return {};
+  if (range.hi <= 0) return {};  // not if it is no number
   const double slope = 1 / (std::sqrt(low) + std::sqrt(range.hi));
   if (!(slope > 0) || !(slope < kInfinity)) {
     return constant_model({0, next_up(std::sqrt(range.hi))});

@@ -308,6 +308,7 @@ PathSample trace_path(const PreparedScene& scene, const PathSettings& settings, 
 
 PathSample trace_known_sight(const PreparedScene& scene, const PathSettings& settings,
                              const KnownSight& sight, Sampler sampler, PathRays& rays) {
+  if (sight.mirrors > settings.max_depth) return {};
   Path path{scene, scene.geometry().lights, settings, sampler, rays, sight.ray};
   path.known = &sight;
   path.first_depth = sight.mirrors;

@@ -77,6 +77,12 @@ TEST(taylor_model, a_reciprocal_of_what_may_be_zero_is_none) {
   EXPECT_TRUE(reciprocal({-0.5, 0.3, 0.1}).has_value());
 }
 
+TEST(taylor_model, the_root_of_what_is_no_number_is_not_known) {
+  const TaylorModel lost = squared(TaylorModel{3e200}) - squared(TaylorModel{2e200});
+  const Interval root = range_of(square_root(lost));
+  EXPECT_FALSE(root.lo > 0 || root.hi < 1e200);
+}
+
 TEST(taylor_model, polynomials_over_the_square_are_those_over_the_picture) {
   CsgRandom random(6);
   for (int i = 0; i < 500; ++i) {

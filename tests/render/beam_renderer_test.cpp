@@ -133,6 +133,35 @@ TEST(beam_renderer, flat_mirrors_agree_with_the_path_tracer) {
   EXPECT_LT(mean_of(beam.picture.layers[0].image), 0.05);
 }
 
+// A cube of glass, as a solid and as a mesh, and how deep paths may go.
+TEST(beam_renderer, glass_agrees_with_the_path_tracer) {
+  const Mesh cube = make_box_mesh(Vec3d(0.7));
+  for (const bool is_mesh : {false, true}) {
+    Scene scene = beam_scene();
+    Material glass;
+    glass.base_color = {0.9F, 1, 0.9F};
+    glass.transmission = 1;
+    glass.roughness = 0;
+    scene.materials.push_back(glass);
+    scene.environment = ConstantEnvironment{{0.3F, 0.4F, 0.5F}};
+    if (is_mesh) {
+      scene.objects.pop_back();
+      add_object(scene, cube, glass, {{}, {0, 0, 1}});
+    } else {
+      scene.csg_trees[1] = one_leaf(CsgBox{Vec3d(-0.7), Vec3d(0.7)}, {{}, {0, 0, 1}});
+      scene.csg_trees[1].leaves[0].material = MaterialId{2};
+    }
+    scene.image.width_px = scene.image.height_px = 8;
+    for (const int depth : {1, 8}) {
+      scene.image.max_depth = depth;
+      const Image beam = render(scene, *make_beam_renderer(), 64).picture.color;
+      const Image path = render(scene, *make_path_renderer(), 1024).picture.color;
+      EXPECT_LT(rmse(beam, path), 0.03) << is_mesh << ", " << depth;
+      EXPECT_NEAR(mean_of(beam), mean_of(path), 0.01 * mean_of(path)) << is_mesh << ", " << depth;
+    }
+  }
+}
+
 TEST(beam_renderer, fills_its_layers_and_counts) {
   const Scene scene = beam_scene();
   const auto renderer = make_beam_renderer();
