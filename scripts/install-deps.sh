@@ -8,8 +8,8 @@ packages=(
   g++ cmake ninja-build ccache git python3
   # checks: clang-tidy, clang-format, libFuzzer and its sanitizers
   clang clang-tidy clang-format libclang-rt-14-dev
-  # ray kernels, threads
-  libembree-dev libtbb-dev
+  # ray kernels, threads, vector instructions
+  libembree-dev libtbb-dev libhwy-dev
   # pictures
   libopenexr-dev libpng-dev libturbojpeg0-dev libstb-dev
   # models, scenes, JSON

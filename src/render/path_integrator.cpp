@@ -58,6 +58,7 @@ struct Path {
   const KnownSight* known = nullptr;  // until the first vertex is done
   bool skips_area_lights = false;     // the scattering before knows them
   int first_depth = 0;                // scatterings before the first ray
+  bool ends_here = false;             // where the ray arrives, emission counts and no more
 
   // Weight of an emitter that BSDF sampling found and light sampling finds with density light_pdf.
   template <class LightPdf>
@@ -268,7 +269,7 @@ PathSample trace(Path& path) {
     if (path.kind == RayKind::camera) {
       fill_first_hit(result.first, *hit, material, frame, hit->t + path.passed_distance);
     }
-    if (depth == settings.max_depth) {
+    if (depth == settings.max_depth || path.ends_here) {
       break;
     }
     const Vec3f wo = local_from_world(frame, -path.ray.direction);
@@ -284,6 +285,7 @@ PathSample trace(Path& path) {
     const bool goes_on = path.scatter(*hit, frame, bsdf, u.x) &&
                          (depth < kRouletteDepth || path.survives_roulette(u.y));
     path.skips_area_lights = knows_area_lights && path.light_sampled;
+    path.ends_here = settings.only_glossy && u.x < bsdf.share_diffuse;
     // Traced last: the processor overlaps the arithmetic of both samples, and then both rays.
     if (shadow) {
       ++rays.total;

@@ -26,6 +26,9 @@ enum class Strategies { both, light_sampling, bsdf_sampling };
 struct PathSettings {
   int max_depth = 8;
   Strategies strategies = Strategies::both;
+  // Paths go on only where a glossy lobe, a mirror or glass has drawn the direction: diffuse surfaces show what comes
+  // to them from lights and environment alone.
+  bool only_glossy = false;
 };
 
 struct PathRays {

@@ -1,0 +1,86 @@
+// edge_point.h — a moving view of a scene under expensive light
+// What       EdgePointEngine makes one frame after another from few shaded points and from edges found analytically:
+//            a pixel takes its colour from points that no edge parts from it. Points are kept from frame to frame;
+//            each frame asks for new ones where they are missed most.
+// Guarantee  next_frame() never waits for shading, and its own work does not depend on what shading costs. With
+//            `synchronous` the same calls give the same frames, at any number of threads.
+// Limits     one thread at a time may call an engine
+// Source     K. Bala, B. Walter, D. P. Greenberg, "Combining Edges and Points for Interactive High-Quality
+//            Rendering", SIGGRAPH 2003
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+
+#include "arris/image.h"
+#include "arris/render.h"
+#include "arris/scene.h"
+
+namespace arris {
+
+// What a point's colour is made of.
+enum class EdgePointShader {
+  direct,  // emission, and light that comes straight from lights and environment
+  glossy,  // and what glossy surfaces, mirrors and glass show
+  gi,      // and all light between surfaces: path tracing
+};
+
+struct EdgePointSettings {
+  EdgePointShader shader = EdgePointShader::gi;
+  double density = 0.02;    // new points a frame, in parts of the pixels; above 0, at most 1
+  int paths_per_point = 0;  // 0: as many as the shader needs for little noise
+  bool use_edges =
+      true;  // false: points are interpolated across everything, as in the Render Cache
+  bool complex_filter =
+      true;                  // pixels with several edges are reconstructed at twice the resolution
+  bool synchronous = false;  // shading is done within next_frame()
+  double first_density = 0.2;  // synchronous: of points before the first frame
+  std::uint32_t seed = 0;
+  int threads = 0;  // 0: all
+};
+
+struct EdgePointStats {
+  // Milliseconds.
+  struct Stages {
+    double edges = 0, raster = 0, points = 0, reachability = 0, interpolation = 0, antialias = 0,
+           complex = 0, total = 0;
+  } stages;
+  // Pixels.
+  struct Classes {
+    std::uint64_t empty = 0, simple = 0, complex = 0;
+  } classes;
+  struct Edges {
+    std::uint64_t silhouette = 0, sharp = 0, shadow = 0;
+  } edges;
+  std::uint64_t new_points = 0;  // that came since the last frame
+  std::uint64_t points = 0;      // in the cache
+  std::uint64_t unresolved = 0;  // pixels that no sample reaches
+  RayCounts rays;                // of shading since the last frame
+  double shading_seconds = 0;    // synchronous: of the new points
+  std::uint64_t cache_bytes = 0, image_bytes = 0;
+};
+
+class EdgePointEngine {
+ public:
+  explicit EdgePointEngine(std::shared_ptr<const PreparedScene> scene,
+                           const EdgePointSettings& settings = {});
+  EdgePointEngine(const EdgePointEngine&) = delete;
+  EdgePointEngine& operator=(const EdgePointEngine&) = delete;
+  ~EdgePointEngine();
+
+  void set_camera(const Camera& camera);
+
+  // The frame of the camera and scene as they are now; valid until the next call.
+  const Image& next_frame();
+  [[nodiscard]] const EdgePointStats& stats() const;
+  // 3 channels, of the last frame: empty pixels black, simple ones blue, complex ones red; those with a point
+  // brighter.
+  [[nodiscard]] Image classes_picture() const;
+
+ private:
+  class Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace arris

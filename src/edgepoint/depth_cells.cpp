@@ -1,0 +1,72 @@
+#include "edgepoint/depth_cells.h"
+
+#include <algorithm>
+#include <bit>
+#include <cstdint>
+#include <limits>
+
+namespace arris {
+namespace {
+
+constexpr float kInfinity = std::numeric_limits<float>::infinity();
+
+// Sixty-four pixels with so few points say nothing.
+constexpr int kFewPoints = 3;
+// An edge may lie deeper than the points that surround it by what a surface that is this steep gains over the width
+// of some pixels.
+constexpr float kPixelsDeep = 6;
+
+}  // namespace
+
+DepthCells::DepthCells(int width, int height, float pixel_size)
+    : width_(width),
+      height_(height),
+      columns_((width + kSide - 1) / kSide),
+      rows_((height + kSide - 1) / kSide),
+      pixel_size_(pixel_size),
+      cells_(std::size_t(columns_) * std::size_t(rows_)),
+      limits_(std::size_t(columns_ + 1) * std::size_t(rows_ + 1)) {}
+
+void DepthCells::fill_cells(std::span<const PointKey> points, int cell_row) {
+  Cell* const row = cells_.data() + std::size_t(cell_row) * std::size_t(columns_);
+  std::fill(row, row + columns_, Cell{kInfinity, 0, 0});
+  const int last = std::min(height_, (cell_row + 1) * kSide);
+  for (int y = cell_row * kSide; y < last; ++y) {
+    const PointKey* const keys = points.data() + std::size_t(y) * std::size_t(width_);
+    for (int x = 0; x < width_; ++x) {
+      if (keys[x].is_none()) continue;
+      Cell& cell = row[x / kSide];
+      const float depth = keys[x].depth();
+      cell.nearest = std::min(cell.nearest, depth);
+      cell.farthest = std::max(cell.farthest, depth);
+      ++cell.count;
+    }
+  }
+}
+
+void DepthCells::fill_limits(int limit_row) {
+  float* const limits = limits_.data() + std::size_t(limit_row) * std::size_t(columns_ + 1);
+  for (int i = 0; i <= columns_; ++i) {
+    Cell around{kInfinity, 0, 0};
+    for (int r = std::max(0, limit_row - 1); r <= std::min(rows_ - 1, limit_row); ++r) {
+      for (int c = std::max(0, i - 1); c <= std::min(columns_ - 1, i); ++c) {
+        const Cell& cell = cells_[std::size_t(r) * std::size_t(columns_) + std::size_t(c)];
+        around.nearest = std::min(around.nearest, cell.nearest);
+        around.farthest = std::max(around.farthest, cell.farthest);
+        around.count += cell.count;
+      }
+    }
+    // Points spread over the window show all of its depths but for about one part in their number.
+    const float spread =
+        (around.farthest - around.nearest) * (2.0F / float(std::max(around.count, 1)));
+    limits[i] = around.count < kFewPoints
+                    ? kInfinity
+                    : around.farthest + spread + around.farthest * pixel_size_ * kPixelsDeep;
+  }
+}
+
+float PointKey::depth() const {
+  return std::bit_cast<float>(std::uint32_t(bits_ >> 32U));
+}
+
+}  // namespace arris

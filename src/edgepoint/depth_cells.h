@@ -1,0 +1,49 @@
+// depth_cells.h — how far away an edge may be and still be seen
+// What       Edges behind the points around them are hidden. As points lie between edges and leave gaps, the depth
+//            that an edge is held against is the largest of the points around it, and more where points are few.
+// Guarantee  none: an edge that is kept in error costs a neighbour, one that is lost lets colours bleed, so the
+//            depth is a generous one
+// Source     Bala, Walter, Greenberg (2003), §4.5, "Eliminating occluded edges": the largest depth of a 4 × 4
+//            neighbourhood and an offset that depends on the local density of points. Here cells of 4 × 4 pixels and
+//            the 2 × 2 cells around a place; the offset knows the slope.
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "edgepoint/edge_point_image.h"
+
+namespace arris {
+
+class DepthCells {
+ public:
+  // pixel_size: of a pixel at depth 1, in the world.
+  DepthCells(int width, int height, float pixel_size);
+
+  void fill_cells(std::span<const PointKey> points, int cell_row);
+  // After all rows of cells.
+  void fill_limits(int limit_row);
+  [[nodiscard]] int cell_rows() const { return rows_; }
+  [[nodiscard]] int limit_rows() const { return rows_ + 1; }
+
+  // The largest depth at which an edge is seen at a place of the picture.
+  [[nodiscard]] float limit_at(float x, float y) const {
+    const int i = int(x * (1.0F / kSide) + 0.5F), j = int(y * (1.0F / kSide) + 0.5F);
+    return limits_[std::size_t(j) * std::size_t(columns_ + 1) + std::size_t(i)];
+  }
+
+ private:
+  static constexpr int kSide = 4;  // pixels
+  struct Cell {
+    float nearest, farthest;
+    int count;
+  };
+
+  int width_, height_, columns_, rows_;
+  float pixel_size_;
+  std::vector<Cell> cells_;
+  std::vector<float> limits_;  // at the corners of cells: of the four around
+};
+
+}  // namespace arris

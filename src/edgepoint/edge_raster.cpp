@@ -1,0 +1,160 @@
+#include "edgepoint/edge_raster.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <utility>
+
+namespace arris {
+namespace {
+
+// Nearer to the eye, in parts of the edge's depth, an edge is cut off.
+constexpr double kNear = 1e-6;
+// Pixels around the picture that edges are drawn to.
+constexpr double kAround = 2;
+
+struct Clip {
+  double from = 0, to = 1;
+  // Keeps where start + t·change ≥ 0.
+  void keep(double start, double end) {
+    if (start >= 0 && end >= 0) return;
+    if (start < 0 && end < 0) {
+      to = -1;
+      return;
+    }
+    const double t = start / (start - end);
+    if (start < 0) {
+      from = std::max(from, t);
+    } else {
+      to = std::min(to, t);
+    }
+  }
+};
+
+std::uint8_t eighth(float position, int pixel) {
+  return std::uint8_t(1U << unsigned(std::clamp(int((position - float(pixel)) * 8), 0, 7)));
+}
+
+// One segment, and the lines of one band.
+class Marker {
+ public:
+  Marker(const ScreenEdge& e, const DepthCells& depth, RowBand band, int width, int height,
+         Crossings& crossings)
+      : e_(e), depth_(depth), band_(band), width_(width), height_(height), crossings_(crossings) {}
+
+  // Lines x = j / 2.
+  void mark_columns() {
+    const float dx = e_.x1 - e_.x0;
+    if (dx == 0) return;
+    const float lower = std::min(e_.x0, e_.x1), upper = std::max(e_.x0, e_.x1);
+    int first = int(std::floor(2 * lower)) + 1, last = int(std::floor(2 * upper));
+    first = std::max(first, 0);
+    last = std::min(last, 2 * width_);
+    const float slope = (e_.y1 - e_.y0) / dx;
+    if (std::abs(slope) > 0) limit_to_band(slope, first, last);
+    for (int j = first; j <= last; ++j) {
+      const float x = 0.5F * float(j);
+      const float t = (x - e_.x0) / dx;
+      const float y = e_.y0 + (x - e_.x0) * slope;
+      const int row = int(std::floor(y));
+      if (row < band_.first || row >= band_.last || is_hidden(x, y, t)) continue;
+      if (j % 2 == 0) {
+        crossings_.left.row(row)[j / 2] |= eighth(y, row);
+      } else {
+        crossings_.mid_column.row(row)[j / 2] |= eighth(y, row);
+      }
+    }
+  }
+
+  // Lines y = j / 2.
+  void mark_rows() {
+    const float dy = e_.y1 - e_.y0;
+    if (dy == 0) return;
+    const float lower = std::min(e_.y0, e_.y1), upper = std::max(e_.y0, e_.y1);
+    const int first = std::max(int(std::floor(2 * lower)) + 1, 2 * band_.first);
+    const int past = band_.last == height_ ? 2 * height_ : 2 * band_.last - 1;
+    const int last = std::min(int(std::floor(2 * upper)), past);
+    const float slope = (e_.x1 - e_.x0) / dy;
+    for (int j = first; j <= last; ++j) {
+      const float y = 0.5F * float(j);
+      const float t = (y - e_.y0) / dy;
+      const float x = e_.x0 + (y - e_.y0) * slope;
+      const int column = int(std::floor(x));
+      if (column < 0 || column >= width_ || is_hidden(x, y, t)) continue;
+      if (j % 2 == 0) {
+        crossings_.upper.row(j / 2)[column] |= eighth(x, column);
+      } else {
+        crossings_.mid_row.row(j / 2)[column] |= eighth(x, column);
+      }
+    }
+  }
+
+ private:
+  // Leaves out lines that are met outside of the band by more than a pixel.
+  void limit_to_band(float slope, int& first, int& last) const {
+    const float at_first = e_.x0 + (float(band_.first) - 1 - e_.y0) / slope;
+    const float at_last = e_.x0 + (float(band_.last) + 1 - e_.y0) / slope;
+    const float lower = std::clamp(std::min(at_first, at_last), -1.0F, float(width_) + 1);
+    const float upper = std::clamp(std::max(at_first, at_last), -1.0F, float(width_) + 1);
+    first = std::max(first, int(std::floor(2 * lower)) - 1);
+    last = std::min(last, int(std::ceil(2 * upper)) + 1);
+  }
+
+  [[nodiscard]] bool is_hidden(float x, float y, float t) const {
+    const float inverse =
+        e_.inverse_depth0 + std::clamp(t, 0.0F, 1.0F) * (e_.inverse_depth1 - e_.inverse_depth0);
+    return inverse * depth_.limit_at(std::clamp(x, 0.0F, float(width_)),
+                                     std::clamp(y, 0.0F, float(height_))) <
+           1;
+  }
+
+  const ScreenEdge& e_;
+  const DepthCells& depth_;
+  RowBand band_;
+  int width_, height_;
+  Crossings& crossings_;
+};
+
+void clear(CrossingRows& rows, int first, int last) {
+  std::memset(rows.row(first), 0, std::size_t(last - first) * rows.stride());
+}
+
+}  // namespace
+
+ScreenEdge project_edge(const PixelView& view, const WorldEdge& edge) {
+  const Vec3d a = project(view, Vec3d(edge.a)), b = project(view, Vec3d(edge.b));
+  const double near = kNear * std::max(a.z, b.z);
+  if (!(near > 0)) return {};
+  Clip clip;
+  clip.keep(a.z - near, b.z - near);
+  clip.keep(a.x + kAround * a.z, b.x + kAround * b.z);
+  clip.keep(a.y + kAround * a.z, b.y + kAround * b.z);
+  const double right = view.width_px + kAround, bottom = view.height_px + kAround;
+  clip.keep(right * a.z - a.x, right * b.z - b.x);
+  clip.keep(bottom * a.z - a.y, bottom * b.z - b.y);
+  if (!(clip.from < clip.to)) return {};
+  const Vec3d p = clip.from == 0 ? a : a + (b - a) * clip.from;
+  const Vec3d q = clip.to == 1 ? b : a + (b - a) * clip.to;
+  return {float(p.x / p.z), float(p.y / p.z), float(1 / p.z),
+          float(q.x / q.z), float(q.y / q.z), float(1 / q.z)};
+}
+
+void rasterize_edges(std::span<const ScreenEdge> edges, const DepthCells& depth, RowBand band,
+                     int width_px, int height_px, Crossings& crossings) {
+  clear(crossings.left, band.first, band.last);
+  clear(crossings.mid_column, band.first, band.last);
+  clear(crossings.mid_row, band.first, band.last);
+  clear(crossings.upper, band.first, band.last == height_px ? height_px + 1 : band.last);
+  for (const ScreenEdge& edge : edges) {
+    const float lower = std::min(edge.y0, edge.y1), upper = std::max(edge.y0, edge.y1);
+    const bool is_last = band.last == height_px;
+    if (upper < float(band.first) || lower > float(band.last) + (is_last ? 1.0F : 0.0F)) continue;
+    Marker marker(edge, depth, band, width_px, height_px, crossings);
+    marker.mark_columns();
+    marker.mark_rows();
+  }
+}
+
+}  // namespace arris

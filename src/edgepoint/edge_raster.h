@@ -1,0 +1,36 @@
+// edge_raster.h — edges in space become crossings of the pixels' boundaries
+// What       projects line segments, clips them to the picture, and marks on each line between pixels, and on those
+//            through the pixels' middles, in which eighth of a pixel an edge crosses it, unless it is hidden there
+// Guarantee  segments with a common end cross a line at it once, as ends are taken half open
+// Cost       one division for each segment, about 2 ns for each crossing
+// Source     Bala, Walter, Greenberg (2003), §4.5, §5.4
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "arris/math.h"
+#include "edgepoint/depth_cells.h"
+#include "edgepoint/edge_point_image.h"
+#include "edgepoint/pixel_view.h"
+
+namespace arris {
+
+struct WorldEdge {
+  Vec3f a, b;
+};
+
+// In picture coordinates; inverse depths are linear along it.
+struct ScreenEdge {
+  float x0 = 0, y0 = 0, inverse_depth0 = 0;
+  float x1 = 0, y1 = 0, inverse_depth1 = 0;
+};
+
+// An edge of no length where nothing of it is in the picture.
+ScreenEdge project_edge(const PixelView& view, const WorldEdge& edge);
+
+// Clears and fills the crossings of a band's rows. Bands share nothing.
+void rasterize_edges(std::span<const ScreenEdge> edges, const DepthCells& depth, RowBand band,
+                     int width_px, int height_px, Crossings& crossings);
+
+}  // namespace arris

@@ -1,0 +1,68 @@
+// frame_maker.h — one frame of the edge-and-point renderer, from edges and points to a picture
+// What       projects points, culls and rasterises edges, classifies pixels, finds reachability, reconstructs. What
+//            the frames of one size share is kept.
+// Guarantee  the same picture at any number of threads
+// Cost       every stage runs in bands of rows on all cores
+// Source     Bala, Walter, Greenberg (2003), Fig. 2, §4, §5
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "arris/image.h"
+#include "edgepoint/classify.h"
+#include "edgepoint/depth_cells.h"
+#include "edgepoint/edge_point_image.h"
+#include "edgepoint/edge_raster.h"
+#include "edgepoint/pixel_view.h"
+#include "edgepoint/point_cache.h"
+
+namespace arris {
+
+// Milliseconds. Interpolation, antialiasing and complex pixels go on in one pass: its time is shared out by what each
+// has taken of all threads'.
+struct FrameTimes {
+  double points = 0, raster = 0, reachability = 0, interpolation = 0, antialias = 0, complex = 0;
+};
+
+struct FrameReport {
+  FrameTimes times;
+  PixelClasses classes;
+  std::size_t unresolved = 0;  // pixels that no sample reaches: filled from around
+};
+
+struct FrameSettings {
+  std::uint32_t frame = 0;
+  bool complex_filter = true;
+  int threads = 0;  // 0: all
+};
+
+class FrameMaker {
+ public:
+  FrameMaker(int width_px, int height_px);
+
+  // The view's size must be the maker's. Tells the cache what was seen of it.
+  FrameReport make(const PixelView& view, std::span<const WorldEdge> edges, PointCache& cache,
+                   const FrameSettings& settings, Image& picture);
+
+  [[nodiscard]] const EdgePointImage& image() const { return image_; }
+  // How much each pixel wants a new sample (reconstruct.h).
+  [[nodiscard]] std::span<const std::uint8_t> wanted() const { return wanted_; }
+  // The picture's rows, cut for parallel loops.
+  [[nodiscard]] std::span<const RowBand> bands() const { return bands_; }
+
+ private:
+  void rasterize(const PixelView& view, std::span<const WorldEdge> edges, int threads);
+
+  EdgePointImage image_;
+  std::vector<ScreenEdge> screen_edges_;
+  std::vector<std::uint8_t> wanted_;
+  std::vector<RowBand> bands_;
+};
+
+// Length in the world of a pixel's side at depth 1.
+float pixel_size(const PixelView& view);
+
+}  // namespace arris

@@ -1,0 +1,18 @@
+// interpolate.h — the colours of primary regions from the samples that reach them
+// What       for each pixel of a row the mean of the samples of its 5 × 5 neighbourhood that no edge parts from it,
+//            weighted by kernel.h and renormalised. Complex pixels take all samples (§5.4).
+// In         the picture's codes and reachability, rows y − 2 to y + 2 of the samples' colours
+// Out        the colours and the sum of weights; where that is 0 nothing is known
+// Cost       25 steps of four multiplications for each vector of pixels
+// Source     Bala, Walter, Greenberg (2003), §5.3
+#pragma once
+
+#include "edgepoint/color_rows.h"
+#include "edgepoint/edge_point_image.h"
+
+namespace arris {
+
+void interpolate_row(const EdgePointImage& image, int y, ColorRows& samples, ColorRow out,
+                     float* weight);
+
+}  // namespace arris

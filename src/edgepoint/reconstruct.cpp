@@ -1,0 +1,184 @@
+#include "edgepoint/reconstruct.h"
+
+#include <algorithm>
+#include <bit>
+#include <chrono>
+#include <cstddef>
+
+#include "edgepoint/antialias.h"
+#include "edgepoint/color_rows.h"
+#include "edgepoint/complex_pixel.h"
+#include "edgepoint/interpolate.h"
+
+namespace arris {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+constexpr int kSampleRows = 8;   // of five that are needed; a power of two
+constexpr int kPrimaryRows = 4;  // of three
+
+// Weights of interpolation are at most the kernel's sum, and 1 with a sample of the pixel's own.
+constexpr float kOwnWeight = 1;
+
+class Band {
+ public:
+  Band(const EdgePointImage& image, const PointCache& cache, const ReconstructionSettings& settings,
+       RowBand band, Image& picture, std::span<std::uint8_t> wanted)
+      : image_(image),
+        cache_(cache),
+        settings_(settings),
+        band_(band),
+        picture_(picture),
+        wanted_(wanted),
+        width_(image.width_px),
+        samples_(kSampleRows, width_),
+        primary_(kPrimaryRows, width_),
+        weights_(std::size_t(kPrimaryRows) * weight_stride()),
+        ages_(std::size_t(kSampleRows) * std::size_t(width_)) {
+    report_.seen.assign(cache.blocks().size(), 0);
+  }
+
+  BandReport run() {
+    const int first = std::max(band_.first - 1, 0),
+              last = std::min(band_.last + 1, image_.height_px);
+    for (int y = first - 2; y < first + 2; ++y) fetch(y);
+    for (int y = first; y < last; ++y) {
+      fetch(y + 2);
+      interpolate_row(image_, y, samples_, primary_.row(y), weight_row(y));
+      if (y > band_.first) finish(y - 1);
+    }
+    if (last == band_.last) finish(last - 1);
+    return std::move(report_);
+  }
+
+ private:
+  [[nodiscard]] std::size_t weight_stride() const {
+    return std::size_t(width_) + 2 * ColorRows::kMargin;
+  }
+  [[nodiscard]] float* weight_row(int y) {
+    return weights_.data() + std::size_t((y + kPrimaryRows) % kPrimaryRows) * weight_stride();
+  }
+  [[nodiscard]] std::uint8_t* age_row(int y) {
+    return ages_.data() + std::size_t((y + kSampleRows) % kSampleRows) * std::size_t(width_);
+  }
+  [[nodiscard]] PrimaryRows primary_rows(int y) { return {primary_.row(y), weight_row(y)}; }
+
+  // The colours of a row's points; black where there are none, and beyond the picture.
+  void fetch(int y) {
+    const ColorRow row = samples_.row(y);
+    const bool inside = y >= 0 && y < image_.height_px;
+    const PointKey* const keys = inside ? image_.points.data() + image_.offset(0, y) : nullptr;
+    const bool own = y >= band_.first && y < band_.last;
+    std::uint8_t* const ages = age_row(y);
+    for (int x = 0; x < width_; ++x) {
+      Rgb color;
+      if (inside && !keys[x].is_none()) {
+        const PointNumber point = keys[x].point();
+        const PointBlock& block = cache_.block_of(point);
+        color = unpack_radiance(block.radiance[point % kPointBlock]);
+        const auto age = std::uint16_t(settings_.frame - block.born[point % kPointBlock]);
+        ages[x] = std::uint8_t(std::min<std::uint32_t>(age, 255));
+        if (own) ++report_.seen[point / kPointBlock];
+      }
+      row.r[x] = color.x;
+      row.g[x] = color.y;
+      row.b[x] = color.z;
+    }
+  }
+
+  // Row y, when its neighbours are interpolated.
+  void finish(int y) {
+    const PrimaryRows here = primary_rows(y);
+    const PrimaryNeighborhood rows{primary_rows(y - 1), here, primary_rows(y + 1)};
+    float* const out = picture_.values.data() + picture_.offset(0, y);
+    for (int x = 0; x < width_; ++x) {
+      out[3 * x] = here.color.r[x];
+      out[3 * x + 1] = here.color.g[x];
+      out[3 * x + 2] = here.color.b[x];
+    }
+    report_.times.interpolation += lap();
+    for_crossed(y, [&](int x) {
+      if (image_.codes[image_.offset(x, y)].is_simple()) {
+        set_pixel(out + 3 * x, antialias_simple_pixel(image_, x, y, rows));
+      }
+    });
+    report_.times.antialias += lap();
+    for_crossed(y, [&](int x) {
+      if (settings_.complex_filter && image_.codes[image_.offset(x, y)].is_complex()) {
+        const Rgb fallback{here.color.r[x], here.color.g[x], here.color.b[x]};
+        set_pixel(out + 3 * x, reconstruct_complex_pixel(image_, x, y, samples_, fallback));
+      }
+    });
+    report_.times.complex += lap();
+    set_wanted(y, here.weight);
+  }
+
+  // Calls for the pixels of a row that edges cross.
+  template <class Call>
+  void for_crossed(int y, const Call& call) const {
+    const auto& primary = image_.corners.primary;
+    for (int word = 0; word < image_.samples.words(); ++word) {
+      std::uint64_t crossed = ~(primary[0].row(y)[word] & primary[1].row(y)[word] &
+                                primary[2].row(y)[word] & primary[3].row(y)[word]);
+      const int count = std::min(64, width_ - 64 * word);
+      if (count < 64) crossed &= (std::uint64_t{1} << unsigned(count)) - 1;
+      for (; crossed != 0; crossed &= crossed - 1) call(64 * word + std::countr_zero(crossed));
+    }
+  }
+
+  static void set_pixel(float* out, Rgb color) {
+    out[0] = color.x;
+    out[1] = color.y;
+    out[2] = color.z;
+  }
+
+  // Milliseconds since the last call.
+  double lap() {
+    const Clock::time_point now = Clock::now();
+    const double ms = std::chrono::duration<double, std::milli>(now - last_lap_).count();
+    last_lap_ = now;
+    return ms;
+  }
+
+  void set_wanted(int y, const float* weight) {
+    const std::size_t offset = image_.offset(0, y);
+    const std::uint8_t* const ages = age_row(y);
+    for (int x = 0; x < width_; ++x) {
+      const std::size_t at = offset + std::size_t(x);
+      std::uint8_t& wanted = wanted_[at];
+      if (!(weight[x] > 0)) {
+        wanted = 255;
+        report_.unresolved.push_back(std::uint32_t(at));
+      } else if (image_.points[at].is_none()) {
+        // The less is known of it, the more: 200 / (1 + 8 w).
+        wanted = std::uint8_t(200 / (1 + 8 * std::min(weight[x], kOwnWeight)));
+      } else {
+        wanted = std::uint8_t(1 + ages[x] / 16);
+      }
+    }
+  }
+
+  const EdgePointImage& image_;
+  const PointCache& cache_;
+  const ReconstructionSettings& settings_;
+  RowBand band_;
+  Image& picture_;
+  std::span<std::uint8_t> wanted_;
+  int width_;
+  ColorRows samples_, primary_;
+  std::vector<float> weights_;
+  std::vector<std::uint8_t> ages_;
+  BandReport report_;
+  Clock::time_point last_lap_ = Clock::now();
+};
+
+}  // namespace
+
+BandReport reconstruct_band(const EdgePointImage& image, const PointCache& cache,
+                            const ReconstructionSettings& settings, RowBand band, Image& picture,
+                            std::span<std::uint8_t> wanted) {
+  return Band(image, cache, settings, band, picture, wanted).run();
+}
+
+}  // namespace arris

@@ -1,0 +1,28 @@
+// sample_plan.h — which pixels to shade next
+// What       picks about a given number of pixels, each with a chance in proportion to how much it wants a sample,
+//            spread
+//            evenly: the chances are held against a dither pattern that moves from frame to frame
+// Guarantee  the same plan at any number of threads; in the order of tiles, so that what arrives together lies
+//            together
+// Source     Bala, Walter, Greenberg (2003), §5.3 "Prioritized sampling"; the pattern: J. Jimenez, "Next Generation
+//            Post Processing in Call of Duty" (2014), interleaved gradient noise
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace arris {
+
+struct SamplePlanSettings {
+  int width_px = 0, height_px = 0;
+  std::size_t count = 0;  // about so many, and no more
+  std::uint32_t frame = 0;
+};
+
+// Offsets of pixels.
+std::vector<std::uint32_t> plan_samples(std::span<const std::uint8_t> wanted,
+                                        const SamplePlanSettings& settings);
+
+}  // namespace arris

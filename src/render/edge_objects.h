@@ -1,0 +1,39 @@
+// edge_objects.h — the edges of a prepared scene's objects, ready to be found from any eye
+// What       builds the edge tree of every mesh once; objects that share a mesh share it. An edge is drawn as a
+//            silhouette,
+//            or wherever it can be seen if shading jumps across it: where the faces of a flat mesh turn, where vertex
+//            normals, materials or texture coordinates differ on its two sides, or where it is open.
+// Source     Bala, Walter, Greenberg (2003), §6.1, §6.2
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "edgepoint/edge_mesh.h"
+#include "edgepoint/edge_raster.h"
+#include "edgepoint/edge_tree.h"
+#include "render/prepared_scene.h"
+
+namespace arris {
+
+struct EdgeTotals {
+  std::uint64_t silhouette = 0, sharp = 0, shadow = 0;
+};
+
+class EdgeObjects {
+ public:
+  EdgeObjects(const PreparedScene& scene, int threads);
+  ~EdgeObjects();
+
+  // In the world. The scene's objects may have moved since.
+  std::vector<WorldEdge> find_edges(const Scene& scene, Vec3d eye, int threads,
+                                    EdgeTotals& totals) const;
+  [[nodiscard]] std::uint64_t bytes() const;
+
+ private:
+  struct MeshEdges;
+  std::vector<std::shared_ptr<const MeshEdges>> of_object_;  // null: no edges are known
+};
+
+}  // namespace arris
