@@ -18,14 +18,13 @@ constexpr float kPixelsDeep = 6;
 
 }  // namespace
 
-DepthCells::DepthCells(int width, int height, float pixel_size)
+DepthCells::DepthCells(int width, int height)
     : width_(width),
       height_(height),
       columns_((width + kSide - 1) / kSide),
       rows_((height + kSide - 1) / kSide),
-      pixel_size_(pixel_size),
       cells_(std::size_t(columns_) * std::size_t(rows_)),
-      limits_(std::size_t(columns_ + 1) * std::size_t(rows_ + 1)) {}
+      around_(std::size_t(columns_ + 1) * std::size_t(rows_ + 1)) {}
 
 void DepthCells::fill_cells(std::span<const PointKey> points, int cell_row) {
   Cell* const row = cells_.data() + std::size_t(cell_row) * std::size_t(columns_);
@@ -44,8 +43,8 @@ void DepthCells::fill_cells(std::span<const PointKey> points, int cell_row) {
   }
 }
 
-void DepthCells::fill_limits(int limit_row) {
-  float* const limits = limits_.data() + std::size_t(limit_row) * std::size_t(columns_ + 1);
+void DepthCells::fill_limits(int limit_row, float pixel_size) {
+  Around* const row = around_.data() + std::size_t(limit_row) * std::size_t(columns_ + 1);
   for (int i = 0; i <= columns_; ++i) {
     Cell around{kInfinity, 0, 0};
     for (int r = std::max(0, limit_row - 1); r <= std::min(rows_ - 1, limit_row); ++r) {
@@ -59,9 +58,10 @@ void DepthCells::fill_limits(int limit_row) {
     // Points spread over the window show all of its depths but for about one part in their number.
     const float spread =
         (around.farthest - around.nearest) * (2.0F / float(std::max(around.count, 1)));
-    limits[i] = around.count < kFewPoints
-                    ? kInfinity
-                    : around.farthest + spread + around.farthest * pixel_size_ * kPixelsDeep;
+    const float limit = around.count < kFewPoints
+                            ? kInfinity
+                            : around.farthest + spread + around.farthest * pixel_size * kPixelsDeep;
+    row[i] = {around.nearest, limit};
   }
 }
 

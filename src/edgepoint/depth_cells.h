@@ -18,20 +18,18 @@ namespace arris {
 
 class DepthCells {
  public:
-  // pixel_size: of a pixel at depth 1, in the world.
-  DepthCells(int width, int height, float pixel_size);
+  DepthCells(int width, int height);
 
   void fill_cells(std::span<const PointKey> points, int cell_row);
-  // After all rows of cells.
-  void fill_limits(int limit_row);
+  // After all rows of cells. pixel_size: of a pixel at depth 1, in the world.
+  void fill_limits(int limit_row, float pixel_size);
   [[nodiscard]] int cell_rows() const { return rows_; }
   [[nodiscard]] int limit_rows() const { return rows_ + 1; }
 
   // The largest depth at which an edge is seen at a place of the picture.
-  [[nodiscard]] float limit_at(float x, float y) const {
-    const int i = int(x * (1.0F / kSide) + 0.5F), j = int(y * (1.0F / kSide) + 0.5F);
-    return limits_[std::size_t(j) * std::size_t(columns_ + 1) + std::size_t(i)];
-  }
+  [[nodiscard]] float limit_at(float x, float y) const { return around_[place_of(x, y)].limit; }
+  // The smallest depth of the points around.
+  [[nodiscard]] float nearest_at(float x, float y) const { return around_[place_of(x, y)].nearest; }
 
  private:
   static constexpr int kSide = 4;  // pixels
@@ -40,10 +38,18 @@ class DepthCells {
     int count;
   };
 
+  struct Around {
+    float nearest, limit;
+  };
+
+  [[nodiscard]] std::size_t place_of(float x, float y) const {
+    const int i = int(x * (1.0F / kSide) + 0.5F), j = int(y * (1.0F / kSide) + 0.5F);
+    return std::size_t(j) * std::size_t(columns_ + 1) + std::size_t(i);
+  }
+
   int width_, height_, columns_, rows_;
-  float pixel_size_;
   std::vector<Cell> cells_;
-  std::vector<float> limits_;  // at the corners of cells: of the four around
+  std::vector<Around> around_;  // at the corners of cells: of the four around
 };
 
 }  // namespace arris

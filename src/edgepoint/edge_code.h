@@ -79,6 +79,7 @@ class PixelCode {
     bits_ = std::uint16_t((bits_ & ~kPrimaryA) | (is_a ? kPrimaryA : 0));
   }
   void set_sample() { bits_ = std::uint16_t(bits_ | kSample); }
+  void clear_sample() { bits_ = std::uint16_t(bits_ & ~kSample); }
 
  private:
   static constexpr std::uint32_t kPrimaryA = 1U << 14U, kSample = 1U << 15U;

@@ -33,8 +33,23 @@ struct Clip {
   }
 };
 
-std::uint8_t eighth(float position, int pixel) {
-  return std::uint8_t(1U << unsigned(std::clamp(int((position - float(pixel)) * 8), 0, 7)));
+// Ends lie on a grid so fine that it is not seen, and so coarse that where an edge crosses a line is computed exactly
+// in double as far as its pixel goes: crossings with rows and columns always agree on the way through the pixels.
+constexpr double kGrid = 256;  // places a pixel
+
+float on_grid(double v) {
+  return float(std::round(v * kGrid) / kGrid);
+}
+
+// Much less than the distance of a crossing from a corner that it does not pass through.
+constexpr double kAside = 1e-11;
+
+bool is_corner(double v) {
+  return std::floor(2 * v) == 2 * v;
+}
+
+std::uint8_t eighth(double position, int pixel) {
+  return std::uint8_t(1U << unsigned(std::clamp(int((position - pixel) * 8), 0, 7)));
 }
 
 // One segment, and the lines of one band.
@@ -46,20 +61,22 @@ class Marker {
 
   // Lines x = j / 2.
   void mark_columns() {
-    const float dx = e_.x1 - e_.x0;
+    const double dx = double(e_.x1) - double(e_.x0);
     if (dx == 0) return;
     const float lower = std::min(e_.x0, e_.x1), upper = std::max(e_.x0, e_.x1);
     int first = int(std::floor(2 * lower)) + 1, last = int(std::floor(2 * upper));
     first = std::max(first, 0);
     last = std::min(last, 2 * width_);
-    const float slope = (e_.y1 - e_.y0) / dx;
-    if (std::abs(slope) > 0) limit_to_band(slope, first, last);
+    const double dy = double(e_.y1) - double(e_.y0);
+    if (dy != 0) limit_to_band(float(dy / dx), first, last);
     for (int j = first; j <= last; ++j) {
-      const float x = 0.5F * float(j);
-      const float t = (x - e_.x0) / dx;
-      const float y = e_.y0 + (x - e_.x0) * slope;
+      const double x = 0.5 * j, from = x - double(e_.x0);
+      double y = double(e_.y0) + from * dy / dx;
+      // Exactly through a corner: as if everything lay a little to the right.
+      if (dy * dx > 0 && is_corner(y)) y -= kAside;
       const int row = int(std::floor(y));
-      if (row < band_.first || row >= band_.last || is_hidden(x, y, t)) continue;
+      if (row < band_.first || row >= band_.last) continue;
+      if (is_hidden(float(x), float(y), float(from / dx))) continue;
       if (j % 2 == 0) {
         crossings_.left.row(row)[j / 2] |= eighth(y, row);
       } else {
@@ -70,19 +87,18 @@ class Marker {
 
   // Lines y = j / 2.
   void mark_rows() {
-    const float dy = e_.y1 - e_.y0;
+    const double dx = double(e_.x1) - double(e_.x0), dy = double(e_.y1) - double(e_.y0);
     if (dy == 0) return;
     const float lower = std::min(e_.y0, e_.y1), upper = std::max(e_.y0, e_.y1);
     const int first = std::max(int(std::floor(2 * lower)) + 1, 2 * band_.first);
     const int past = band_.last == height_ ? 2 * height_ : 2 * band_.last - 1;
     const int last = std::min(int(std::floor(2 * upper)), past);
-    const float slope = (e_.x1 - e_.x0) / dy;
     for (int j = first; j <= last; ++j) {
-      const float y = 0.5F * float(j);
-      const float t = (y - e_.y0) / dy;
-      const float x = e_.x0 + (y - e_.y0) * slope;
+      const double y = 0.5 * j, from = y - double(e_.y0);
+      const double x = double(e_.x0) + from * dx / dy;
       const int column = int(std::floor(x));
-      if (column < 0 || column >= width_ || is_hidden(x, y, t)) continue;
+      if (column < 0 || column >= width_) continue;
+      if (is_hidden(float(x), float(y), float(from / dy))) continue;
       if (j % 2 == 0) {
         crossings_.upper.row(j / 2)[column] |= eighth(x, column);
       } else {
@@ -137,8 +153,8 @@ ScreenEdge project_edge(const PixelView& view, const WorldEdge& edge) {
   if (!(clip.from < clip.to)) return {};
   const Vec3d p = clip.from == 0 ? a : a + (b - a) * clip.from;
   const Vec3d q = clip.to == 1 ? b : a + (b - a) * clip.to;
-  return {float(p.x / p.z), float(p.y / p.z), float(1 / p.z),
-          float(q.x / q.z), float(q.y / q.z), float(1 / q.z)};
+  return {on_grid(p.x / p.z), on_grid(p.y / p.z), float(1 / p.z),
+          on_grid(q.x / q.z), on_grid(q.y / q.z), float(1 / q.z)};
 }
 
 void rasterize_edges(std::span<const ScreenEdge> edges, const DepthCells& depth, RowBand band,

@@ -1,7 +1,10 @@
 // edge_raster.h — edges in space become crossings of the pixels' boundaries
 // What       projects line segments, clips them to the picture, and marks on each line between pixels, and on those
 //            through the pixels' middles, in which eighth of a pixel an edge crosses it, unless it is hidden there
-// Guarantee  segments with a common end cross a line at it once, as ends are taken half open
+// Guarantee  segments with a common end cross a line at it once, as ends are taken half open; the crossings of a
+//            segment with rows and columns tell one way through the pixels, also where it runs exactly through
+//            corners (tests/edgepoint/edge_raster_test.cpp). So a pixel that one edge passes is crossed twice.
+// Limits     pictures of at most 65,536 pixels a side
 // Cost       one division for each segment, about 2 ns for each crossing
 // Source     Bala, Walter, Greenberg (2003), §4.5, §5.4
 #pragma once

@@ -6,6 +6,7 @@
 
 #include "base/check.h"
 #include "base/parallel_for.h"
+#include "edgepoint/hidden_points.h"
 #include "edgepoint/hole_filler.h"
 #include "edgepoint/point_raster.h"
 #include "edgepoint/reach_planes.h"
@@ -47,21 +48,25 @@ float pixel_size(const PixelView& view) {
 
 FrameMaker::FrameMaker(int width_px, int height_px)
     : image_(width_px, height_px),
+      depth_(width_px, height_px),
       wanted_(image_.codes.size(), 255),
       bands_(make_bands(height_px)) {}
 
+void FrameMaker::find_depth(const PixelView& view, int threads) {
+  parallel_for(std::size_t(depth_.cell_rows()), {.grain = 8, .threads = threads},
+               [&](std::size_t i) { depth_.fill_cells(image_.points, int(i)); });
+  const float size = pixel_size(view);
+  parallel_for(std::size_t(depth_.limit_rows()), {.grain = 16, .threads = threads},
+               [&](std::size_t i) { depth_.fill_limits(int(i), size); });
+}
+
 void FrameMaker::rasterize(const PixelView& view, std::span<const WorldEdge> edges, int threads) {
-  DepthCells depth(image_.width_px, image_.height_px, pixel_size(view));
-  parallel_for(std::size_t(depth.cell_rows()), {.grain = 8, .threads = threads},
-               [&](std::size_t i) { depth.fill_cells(image_.points, int(i)); });
-  parallel_for(std::size_t(depth.limit_rows()), {.grain = 16, .threads = threads},
-               [&](std::size_t i) { depth.fill_limits(int(i)); });
   screen_edges_.resize(edges.size());
   parallel_for(edges.size(), {.grain = 1024, .threads = threads},
                [&](std::size_t i) { screen_edges_[i] = project_edge(view, edges[i]); });
   std::erase_if(screen_edges_, [](const ScreenEdge& e) { return e.x0 == e.x1 && e.y0 == e.y1; });
   parallel_for(bands_.size(), {.grain = 1, .threads = threads}, [&](std::size_t i) {
-    rasterize_edges(screen_edges_, depth, bands_[i], image_.width_px, image_.height_px,
+    rasterize_edges(screen_edges_, depth_, bands_[i], image_.width_px, image_.height_px,
                     image_.crossings);
   });
 }
@@ -75,6 +80,7 @@ FrameReport FrameMaker::make(const PixelView& view, std::span<const WorldEdge> e
   Stopwatch watch;
   parallel_for(bands_.size(), parallel,
                [&](std::size_t i) { project_points(view, cache, bands_[i], image_.points); });
+  find_depth(view, settings.threads);
   report.times.points = watch.lap();
   rasterize(view, edges, settings.threads);
   report.times.raster = watch.lap();
@@ -86,6 +92,16 @@ FrameReport FrameMaker::make(const PixelView& view, std::span<const WorldEdge> e
   parallel_for(bands_.size(), parallel,
                [&](std::size_t i) { find_reach(image_.corners, bands_[i], image_.reach); });
   report.times.reachability = watch.lap();
+
+  std::vector<std::vector<std::uint32_t>> hidden(bands_.size());
+  parallel_for(bands_.size(), parallel, [&](std::size_t i) {
+    hidden[i] = find_hidden_points(image_, depth_, bands_[i], pixel_size(view));
+  });
+  for (const std::vector<std::uint32_t>& pixels : hidden) {
+    remove_points(pixels, image_);
+    report.hidden += pixels.size();
+  }
+  report.times.points += watch.lap();
 
   std::vector<BandReport> reports(bands_.size());
   const ReconstructionSettings reconstruction{settings.complex_filter, settings.frame};

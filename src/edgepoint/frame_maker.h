@@ -30,6 +30,7 @@ struct FrameTimes {
 struct FrameReport {
   FrameTimes times;
   PixelClasses classes;
+  std::size_t hidden = 0;      // points behind others that were left out
   std::size_t unresolved = 0;  // pixels that no sample reaches: filled from around
 };
 
@@ -54,9 +55,11 @@ class FrameMaker {
   [[nodiscard]] std::span<const RowBand> bands() const { return bands_; }
 
  private:
+  void find_depth(const PixelView& view, int threads);
   void rasterize(const PixelView& view, std::span<const WorldEdge> edges, int threads);
 
   EdgePointImage image_;
+  DepthCells depth_;
   std::vector<ScreenEdge> screen_edges_;
   std::vector<std::uint8_t> wanted_;
   std::vector<RowBand> bands_;

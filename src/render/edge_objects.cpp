@@ -5,9 +5,12 @@
 #include <map>
 #include <span>
 #include <utility>
+#include <variant>
 
 #include "base/parallel_for.h"
+#include "edgepoint/frame_maker.h"
 #include "edges/welded_mesh.h"
+#include "render/rounded_edges.h"
 
 namespace arris {
 namespace {
@@ -19,10 +22,7 @@ constexpr double kSharpTurn = radians(8);
 // What a mesh shows on its own, whatever object it is.
 class Seams {
  public:
-  Seams(const Scene& scene, const Mesh& mesh, bool textured)
-      : mesh_(mesh), textured_(textured && !mesh.uvs.empty()) {
-    (void)scene;
-  }
+  Seams(const Mesh& mesh, bool textured) : mesh_(mesh), textured_(textured && !mesh.uvs.empty()) {}
 
   // Whether shading jumps across an edge for other reasons than the turn of its faces.
   [[nodiscard]] bool jumps(std::uint32_t h, std::uint32_t twin) const {
@@ -50,6 +50,45 @@ class Seams {
   const Mesh& mesh_;
   bool textured_;
 };
+
+bool is_textured(const Scene& scene, const Object& object) {
+  const auto textured = [&](MaterialId id) {
+    return scene.materials[id.index].base_color_texture.has_value();
+  };
+  const std::vector<MaterialId>& own = scene.meshes[object.mesh.index].triangle_materials;
+  return textured(object.material) || std::any_of(own.begin(), own.end(), textured);
+}
+
+// Roundings of less than so many pixels' radius are seen as edges.
+constexpr double kSeenRadius = 0.75;
+
+RoundedView make_rounded_view(const PixelView& view) {
+  const Vec3d forward = transpose(view.pixel_from_world).z;
+  return {view.eye, normalize(forward), kSeenRadius * double(pixel_size(view)) * length(forward)};
+}
+
+double world_radius(const RoundedGeometry& geometry) {
+  const double radius = geometry.rounding->data().radius;
+  if (geometry.frame == nullptr) return radius;
+  return radius / std::cbrt(std::abs(determinant(geometry.frame->rounding_from_world.linear)));
+}
+
+// Area lights are seen from their front.
+void add_light_outlines(const Scene& scene, Vec3d eye, std::vector<WorldEdge>& edges,
+                        EdgeTotals& totals) {
+  for (const Light& light : scene.lights) {
+    const auto* area = std::get_if<AreaLight>(&light);
+    if (area == nullptr || !area->visible_to_camera) continue;
+    if (dot(cross(area->edge_u, area->edge_v), eye - area->corner) <= 0) continue;
+    const Vec3d corners[4] = {area->corner, area->corner + area->edge_u,
+                              area->corner + area->edge_u + area->edge_v,
+                              area->corner + area->edge_v};
+    for (std::size_t i = 0; i < 4; ++i) {
+      edges.push_back({Vec3f(corners[i]), Vec3f(corners[(i + 1) % 4])});
+    }
+    totals.sharp += 4;
+  }
+}
 
 }  // namespace
 
@@ -84,55 +123,112 @@ struct EdgeObjects::MeshEdges {
 
 EdgeObjects::EdgeObjects(const PreparedScene& prepared, int threads) {
   const Scene& scene = prepared.scene();
-  of_object_.resize(scene.objects.size());
+  objects_.resize(scene.objects.size());
   std::map<std::pair<std::uint32_t, bool>, std::vector<std::uint32_t>> users;
-  for (std::uint32_t i = 0; i < scene.objects.size(); ++i) {
-    const Object& object = scene.objects[i];
-    if (object.csg) continue;
-    const Mesh& mesh = scene.meshes[object.mesh.index];
-    bool textured = scene.materials[object.material.index].base_color_texture.has_value();
-    for (const MaterialId id : mesh.triangle_materials) {
-      textured = textured || scene.materials[id.index].base_color_texture.has_value();
-    }
-    users[{object.mesh.index, textured}].push_back(i);
+  const std::vector<GeometryRecord>& records = prepared.geometry().embree.records();
+  for (std::uint32_t g = 0; g < records.size(); ++g) {
+    if (records[g].triangles == nullptr) continue;
+    const std::uint32_t i = records[g].object.index;
+    objects_[i].geometry = g;
+    users[{records[g].mesh.index, is_textured(scene, scene.objects[i])}].push_back(i);
   }
   std::vector<std::pair<std::pair<std::uint32_t, bool>, std::vector<std::uint32_t>>> tasks(
       users.begin(), users.end());
   parallel_for(tasks.size(), {.grain = 1, .threads = threads}, [&](std::size_t t) {
     const Mesh& mesh = scene.meshes[tasks[t].first.first];
     const WeldedMesh welded = make_welded_mesh({mesh.positions, mesh.triangles}, mesh.name);
-    const Seams seams(scene, mesh, tasks[t].first.second);
+    const Seams seams(mesh, tasks[t].first.second);
     EdgeMeshOptions options;
     options.min_sharp_angle = mesh.normals.empty() ? kSharpTurn : 2 * kPi;
     options.is_marked = [&](std::uint32_t h, std::uint32_t twin) { return seams.jumps(h, twin); };
     const bool outward = std::all_of(welded.shells.begin(), welded.shells.end(),
                                      [](const Shell& s) { return s.closed && s.volume > 0; });
     const auto edges = std::make_shared<const MeshEdges>(make_edge_mesh(welded, options), outward);
-    for (const std::uint32_t object : tasks[t].second) of_object_[object] = edges;
+    for (const std::uint32_t i : tasks[t].second) {
+      objects_[i].mesh = edges;
+      objects_[i].rounded = find_rounded(prepared, objects_[i]);
+    }
   });
 }
 
 EdgeObjects::~EdgeObjects() = default;
 
-std::vector<WorldEdge> EdgeObjects::find_edges(const Scene& scene, Vec3d eye, int threads,
-                                               EdgeTotals& totals) const {
+// All edges between the same two planes lie on one line: an edge is rounded if one of the arcs between its faces
+// is beside it.
+std::vector<EdgeObjects::RoundedEdge> EdgeObjects::find_rounded(const PreparedScene& prepared,
+                                                                const ObjectEdges& object) {
+  const RoundedGeometry& rounded = prepared.rounding().geometries[object.geometry];
+  if (rounded.rounding == nullptr) return {};
+  const Rounding::Data& data = rounded.rounding->data();
+  const GeometryRecord& record = prepared.geometry().embree.records()[object.geometry];
+  const Affine3d& world = prepared.scene().objects[record.object.index].world_from_object;
+  const Affine3d rounding_from_object =
+      rounded.frame == nullptr ? world : rounded.frame->rounding_from_world * world;
+  std::multimap<std::pair<std::uint32_t, std::uint32_t>, const Arc*> arcs;
+  for (const Arc& arc : data.arcs) {
+    if (!arc.is_stub()) arcs.insert({std::minmax(arc.face_a, arc.face_b), &arc});
+  }
+  const EdgeMesh& mesh = object.mesh->mesh;
+  std::vector<RoundedEdge> out(mesh.edges.size(), RoundedEdge::no);
+  for (std::uint32_t e = 0; e < mesh.edges.size(); ++e) {
+    const MeshEdge& edge = mesh.edges[e];
+    if (edge.face0 >= data.face.size() || edge.face1 >= data.face.size()) continue;
+    const auto [first, last] =
+        arcs.equal_range(std::minmax(data.face[edge.face0], data.face[edge.face1]));
+    for (auto it = first; it != last && out[e] == RoundedEdge::no; ++it) {
+      const Arc& arc = *it->second;
+      const Vec3d start = data.solids[data.faces[arc.face_a].solid].center + Vec3d(arc.line.p0);
+      const auto along = [&](std::uint32_t v) {
+        const Vec3d p = transform_point(rounding_from_object, Vec3d(mesh.vertices[v]));
+        return dot(p - start, Vec3d(arc.line.axis));
+      };
+      const auto [from, to] = std::minmax(along(edge.v0), along(edge.v1));
+      // Corners take of the edge what the arc lacks.
+      const double reach = 2 * data.radius;
+      if (to < -reach || from > double(arc.line.length) + reach) continue;
+      const bool painted =
+          material_of(record, edge.face0).index != material_of(record, edge.face1).index;
+      out[e] = painted ? RoundedEdge::painted : RoundedEdge::yes;
+    }
+  }
+  return out;
+}
+
+std::vector<WorldEdge> EdgeObjects::find_edges(const PreparedScene& prepared, const PixelView& view,
+                                               int threads, EdgeTotals& totals) const {
   struct Found {
     std::vector<WorldEdge> edges;
     std::uint64_t sharp = 0;
   };
-  std::vector<Found> found(of_object_.size());
-  parallel_for(of_object_.size(), {.grain = 1, .threads = threads}, [&](std::size_t i) {
-    if (!of_object_[i]) return;
-    const MeshEdges& object = *of_object_[i];
+  const Scene& scene = prepared.scene();
+  const RoundedView rounded_view = make_rounded_view(view);
+  std::vector<Found> found(objects_.size());
+  parallel_for(objects_.size(), {.grain = 1, .threads = threads}, [&](std::size_t i) {
+    if (!objects_[i].mesh) return;
+    const MeshEdges& object = *objects_[i].mesh;
     const Affine3d& world = scene.objects[i].world_from_object;
-    for (const std::uint32_t e : object.find(transform_point(inverse(world), eye))) {
+    const RoundedGeometry* rounding = nullptr;
+    if (!objects_[i].rounded.empty()) {
+      rounding = &prepared.rounding().geometries[objects_[i].geometry];
+    }
+    const double radius = rounding == nullptr ? 0 : world_radius(*rounding);
+    for (const std::uint32_t e : object.find(transform_point(inverse(world), view.eye))) {
       const MeshEdge& edge = object.mesh.edges[e];
       const auto end = [&](std::uint32_t v) {
-        return Vec3f(transform_point(world, Vec3d(object.mesh.vertices[v])));
+        return transform_point(world, Vec3d(object.mesh.vertices[v]));
       };
-      found[i].edges.push_back({end(edge.v0), end(edge.v1)});
+      Vec3d a = end(edge.v0), b = end(edge.v1);
+      const RoundedEdge rounded = rounding == nullptr ? RoundedEdge::no : objects_[i].rounded[e];
+      if (rounded != RoundedEdge::no && is_seen_rounded(rounded_view, radius, (a + b) * 0.5)) {
+        if (rounded == RoundedEdge::yes) continue;
+        // From within the solid the edge lies behind the surface that shows it.
+        a += normalize(view.eye - a) * (2 * radius);
+        b += normalize(view.eye - b) * (2 * radius);
+      }
+      found[i].edges.push_back({Vec3f(a), Vec3f(b)});
       found[i].sharp += object.mesh.is_sharp(e) ? 1 : 0;
     }
+    if (rounding != nullptr) find_rounded_outline(*rounding, rounded_view, found[i].edges);
   });
   std::vector<WorldEdge> edges;
   for (const Found& f : found) {
@@ -140,16 +236,19 @@ std::vector<WorldEdge> EdgeObjects::find_edges(const Scene& scene, Vec3d eye, in
     totals.sharp += f.sharp;
     totals.silhouette += f.edges.size() - f.sharp;
   }
+  add_light_outlines(scene, view.eye, edges, totals);
   return edges;
 }
 
 std::uint64_t EdgeObjects::bytes() const {
   std::uint64_t sum = 0;
   std::vector<const MeshEdges*> counted;
-  for (const auto& edges : of_object_) {
-    if (!edges || std::find(counted.begin(), counted.end(), edges.get()) != counted.end()) continue;
-    counted.push_back(edges.get());
-    sum += edges->tree.bytes();
+  for (const ObjectEdges& object : objects_) {
+    const MeshEdges* const mesh = object.mesh.get();
+    if (mesh == nullptr || std::find(counted.begin(), counted.end(), mesh) != counted.end())
+      continue;
+    counted.push_back(mesh);
+    sum += mesh->tree.bytes();
   }
   return sum;
 }

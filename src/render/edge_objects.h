@@ -26,14 +26,25 @@ class EdgeObjects {
   EdgeObjects(const PreparedScene& scene, int threads);
   ~EdgeObjects();
 
-  // In the world. The scene's objects may have moved since.
-  std::vector<WorldEdge> find_edges(const Scene& scene, Vec3d eye, int threads,
+  // In the world. The scene is the one this was made of, or one whose objects, camera and lights have moved since.
+  std::vector<WorldEdge> find_edges(const PreparedScene& scene, const PixelView& view, int threads,
                                     EdgeTotals& totals) const;
   [[nodiscard]] std::uint64_t bytes() const;
 
  private:
   struct MeshEdges;
-  std::vector<std::shared_ptr<const MeshEdges>> of_object_;  // null: no edges are known
+  // painted: of different materials on its two sides, which meet where the mesh's edge is seen.
+  enum class RoundedEdge : std::uint8_t { no, yes, painted };
+  struct ObjectEdges {
+    std::shared_ptr<const MeshEdges> mesh;  // null: no edges are known
+    std::uint32_t geometry = kNoGeometry;
+    std::vector<RoundedEdge> rounded;  // of the mesh's edges; empty: none
+  };
+
+  static std::vector<RoundedEdge> find_rounded(const PreparedScene& scene,
+                                               const ObjectEdges& object);
+
+  std::vector<ObjectEdges> objects_;
 };
 
 }  // namespace arris

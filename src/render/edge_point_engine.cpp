@@ -51,15 +51,15 @@ class EdgePointEngine::Impl {
     const CameraRays rays = make_camera_rays(camera_, image_);
     if (frame_ == 0) shade(rays, std::max(settings_.first_density, settings_.density));
     const Clock::time_point start = Clock::now();
+    const PixelView view = make_pixel_view(rays, image_);
     EdgeTotals totals;
     std::vector<WorldEdge> edges;
     if (settings_.use_edges) {
-      edges = objects_.find_edges(scene_->scene(), camera_.position, settings_.threads, totals);
+      edges = objects_.find_edges(*scene_, view, settings_.threads, totals);
     }
     stats_.stages.edges = milliseconds_since(start);
-    const FrameReport report =
-        maker_.make(make_pixel_view(rays, image_), edges, cache_,
-                    {frame_, settings_.complex_filter, settings_.threads}, picture_);
+    const FrameReport report = maker_.make(
+        view, edges, cache_, {frame_, settings_.complex_filter, settings_.threads}, picture_);
     stats_.stages.total = milliseconds_since(start);
     keep_report(report, totals);
     shade(rays, settings_.density);

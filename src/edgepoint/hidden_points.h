@@ -1,0 +1,28 @@
+// hidden_points.h — points that show through gaps between the points in front of them
+// What       Points that are hidden in a new view show where no nearer point happens to be projected onto their pixel.
+//            A point is taken as hidden if it lies clearly behind the surface that the samples around suggest which can
+//            be reached from it: with no edge between, they are on one surface, whose inverse depths are linear in the
+//            picture where it is flat. A plane is fitted to those.
+// Guarantee  points of one plane never hide each other, however steep the view
+// Cost       a look at the depths around for each point; a fit where they differ
+// Source     the Render Cache culls by the mean depth of 3 × 3 pixels (Walter, Drettakis, Greenberg 2002), which
+//            knows no edges and takes points along silhouettes
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "edgepoint/depth_cells.h"
+#include "edgepoint/edge_point_image.h"
+#include "edgepoint/pixel_view.h"
+
+namespace arris {
+
+// Offsets of the pixels of a band whose points are hidden. pixel_size: DepthCells'.
+std::vector<std::uint32_t> find_hidden_points(const EdgePointImage& image, const DepthCells& cells,
+                                              RowBand band, float pixel_size);
+
+// Takes away the points of these pixels.
+void remove_points(std::span<const std::uint32_t> pixels, EdgePointImage& image);
+
+}  // namespace arris

@@ -1,0 +1,192 @@
+#include "render/rounded_edges.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <optional>
+#include <span>
+
+namespace arris {
+namespace {
+
+// A circle is drawn as chords of at most this angle: off by r/1000.
+constexpr double kStep = radians(5);
+// Of n·n_face: rounding of float positions.
+constexpr double kSlack = 1e-5;
+
+struct Angles {
+  double from, to;
+};
+
+class Outline {
+ public:
+  Outline(const Rounding::Data& data, const RoundedView& view, const Affine3d& world,
+          double world_radius, Vec3d eye, std::vector<WorldEdge>& out)
+      : data_(data),
+        view_(view),
+        world_(world),
+        world_radius_(world_radius),
+        eye_(eye),
+        out_(out) {}
+
+  void add_solid(const Solid& solid) {
+    center_ = solid.center;
+    const Vec3d eye = eye_ - center_;
+    arc_is_crossed_.assign(solid.arc_count, false);
+    for (std::uint32_t i = 0; i < solid.arc_count; ++i) {
+      arc_is_crossed_[i] = add_cylinder(data_.arcs[solid.first_arc + i], eye);
+    }
+    for (std::uint32_t i = 0; i < solid.node_count; ++i) {
+      const Node& node = data_.nodes[solid.first_node + i];
+      if (node.kind == Node::Kind::sphere) add_sphere(solid, node, eye);
+    }
+  }
+
+ private:
+  [[nodiscard]] Vec3d face_normal(std::uint32_t face) const {
+    return Vec3d(data_.faces[face].normal);
+  }
+
+  void emit(Vec3d a, Vec3d b) {
+    const Vec3d p = transform_point(world_, a + center_), q = transform_point(world_, b + center_);
+    if (!is_seen_rounded(view_, world_radius_, (p + q) * 0.5)) return;
+    out_.push_back({Vec3f(p), Vec3f(q)});
+  }
+
+  // Where along the axis the cylinder ends for a line at an offset from it: at a mitre in its slanted plane.
+  [[nodiscard]] double end_of(const Arc& arc, bool last, Vec3d offset) const {
+    const double plain = last ? double(arc.line.length) : 0.0;
+    const Node& node = data_.nodes[last ? arc.node1 : arc.node0];
+    if (node.kind != Node::Kind::mitre) return plain;
+    const Vec3d axis(arc.line.axis), away = last ? -axis : axis;
+    const std::uint32_t self = std::uint32_t(&arc - data_.arcs.data());
+    for (std::uint32_t i = 0; i < node.link_count; ++i) {
+      const std::uint32_t other = data_.links[node.first_link + i];
+      if (other == self || other == kNone) continue;
+      const Arc& arc2 = data_.arcs[other];
+      const std::uint32_t here = std::uint32_t(&node - data_.nodes.data());
+      const Vec3d away2 = arc2.node0 == here ? Vec3d(arc2.line.axis) : -Vec3d(arc2.line.axis);
+      const Vec3d normal = away - away2;
+      const double along = dot(normal, axis);
+      if (std::abs(along) < 1e-9) return plain;
+      return plain - dot(normal, offset) / along;
+    }
+    return plain;
+  }
+
+  // True if an outline crosses the cylinder.
+  bool add_cylinder(const Arc& arc, Vec3d eye) {
+    if (arc.is_stub()) return false;
+    const Vec3d axis(arc.line.axis), p0(arc.line.p0);
+    const Vec3d to_eye = eye - p0;
+    const Vec3d across = to_eye - axis * dot(to_eye, axis);
+    const double distance = length(across);
+    if (distance <= data_.radius) return false;
+    // n is across/distance turned about the axis by ± the angle whose cosine is r / distance.
+    const double cosine = data_.radius / distance, sine = std::sqrt(1 - cosine * cosine);
+    const Vec3d x = across / distance, y = cross(axis, x);
+    const Vec3d na = face_normal(arc.face_a), nb = face_normal(arc.face_b);
+    bool crossed = false;
+    for (const double side : {-1.0, 1.0}) {
+      const Vec3d n = x * cosine + y * (side * sine);
+      // Between the two faces' normals, which turn about the axis from a to b.
+      if (dot(cross(na, n), axis) < -kSlack || dot(cross(n, nb), axis) < -kSlack) continue;
+      if (dot(n, na + nb) < 0) continue;
+      crossed = true;
+      const Vec3d offset = n * data_.radius;
+      const double t0 = end_of(arc, false, offset), t1 = end_of(arc, true, offset);
+      if (t0 < t1) emit(p0 + axis * t0 + offset, p0 + axis * t1 + offset);
+    }
+    return crossed;
+  }
+
+  void add_sphere(const Solid& solid, const Node& node, Vec3d eye) {
+    const std::span<const std::uint32_t> links(data_.links.data() + node.first_link,
+                                               node.link_count);
+    // The circle enters and leaves the sphere's part of the surface where a cylinder's line does.
+    const bool any = std::any_of(links.begin(), links.end(), [&](std::uint32_t arc) {
+      return arc_is_crossed_[arc - solid.first_arc] || data_.arcs[arc].is_stub();
+    });
+    const Vec3d center(node.position), to_eye = eye - center;
+    const double distance = length(to_eye);
+    if (!any || distance <= data_.radius) return;
+    const double cosine = data_.radius / distance, sine = std::sqrt(1 - cosine * cosine);
+    const Vec3d z = to_eye / distance;
+    const Vec3d x = normalize(std::abs(z.x) < 0.6 ? cross(z, {1, 0, 0}) : cross(z, {0, 1, 0}));
+    const Vec3d y = cross(z, x);
+    const auto normal_at = [&](double angle) {
+      return z * cosine + x * (sine * std::cos(angle)) + y * (sine * std::sin(angle));
+    };
+    for (const Angles& part : parts_inside(node, links, z, x, y, cosine, sine)) {
+      const int steps = std::max(1, int(std::ceil((part.to - part.from) / kStep)));
+      Vec3d from = normal_at(part.from);
+      for (int i = 1; i <= steps; ++i) {
+        const Vec3d to = normal_at(part.from + (part.to - part.from) * i / steps);
+        emit(center + from * data_.radius, center + to * data_.radius);
+        from = to;
+      }
+    }
+  }
+
+  // The angles at which the circle lies beyond the ends of all the node's arcs: n·u ≤ 0 for their directions u.
+  [[nodiscard]] std::vector<Angles> parts_inside(const Node& node,
+                                                 std::span<const std::uint32_t> links, Vec3d z,
+                                                 Vec3d x, Vec3d y, double cosine,
+                                                 double sine) const {
+    const std::uint32_t here = std::uint32_t(&node - data_.nodes.data());
+    std::vector<Vec3d> directions;
+    std::vector<double> cuts;
+    for (const std::uint32_t link : links) {
+      const Arc& arc = data_.arcs[link];
+      const Vec3d u = arc.node0 == here ? Vec3d(arc.line.axis) : -Vec3d(arc.line.axis);
+      directions.push_back(u);
+      // cosine z·u + sine (cos x·u + sin y·u) = 0
+      const double a = sine * dot(x, u), b = sine * dot(y, u), c = -cosine * dot(z, u);
+      const double size = std::hypot(a, b);
+      if (size <= std::abs(c)) continue;
+      const double middle = std::atan2(b, a), half = std::acos(c / size);
+      for (const double angle : {middle - half, middle + half}) {
+        cuts.push_back(angle < 0 ? angle + 2 * kPi : angle >= 2 * kPi ? angle - 2 * kPi : angle);
+      }
+    }
+    if (cuts.empty()) cuts.push_back(0);
+    std::sort(cuts.begin(), cuts.end());
+    std::vector<Angles> parts;
+    for (std::size_t i = 0; i < cuts.size(); ++i) {
+      const Angles part{cuts[i], i + 1 < cuts.size() ? cuts[i + 1] : cuts[0] + 2 * kPi};
+      if (part.to - part.from < 1e-9) continue;
+      const double middle = (part.from + part.to) / 2;
+      const Vec3d n = z * cosine + x * (sine * std::cos(middle)) + y * (sine * std::sin(middle));
+      const bool inside = std::all_of(directions.begin(), directions.end(),
+                                      [&](Vec3d u) { return dot(n, u) <= 0; });
+      if (inside) parts.push_back(part);
+    }
+    return parts;
+  }
+
+  const Rounding::Data& data_;
+  const RoundedView& view_;
+  Affine3d world_;  // from the rounding's space
+  double world_radius_;
+  Vec3d eye_;  // in the rounding's space
+  std::vector<WorldEdge>& out_;
+  Vec3d center_;
+  std::vector<bool> arc_is_crossed_;
+};
+
+}  // namespace
+
+void find_rounded_outline(const RoundedGeometry& geometry, const RoundedView& view,
+                          std::vector<WorldEdge>& edges) {
+  const Rounding::Data& data = geometry.rounding->data();
+  const Affine3d from_world =
+      geometry.frame == nullptr ? Affine3d() : geometry.frame->rounding_from_world;
+  const Affine3d world = inverse(from_world);
+  const double scale = std::cbrt(std::abs(determinant(world.linear)));
+  Outline outline(data, view, world, data.radius * scale, transform_point(from_world, view.eye),
+                  edges);
+  for (const Solid& solid : data.solids) outline.add_solid(solid);
+}
+
+}  // namespace arris
