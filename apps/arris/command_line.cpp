@@ -19,9 +19,6 @@ struct Missing {
 constexpr Missing kMissingCommands[] = {
     {"view", "render a picture with arris render"},
 };
-constexpr Missing kMissingOptions[] = {
-    {"--frames", "render one picture at a time"},
-};
 
 [[noreturn]] void fail(const std::string& what) {
   throw Error(Error::Kind::input, "", what);
@@ -46,10 +43,6 @@ std::vector<const OptionRow*> rows_of(const CommandRow& command) {
 
 [[noreturn]] void fail_unknown_option(const CommandRow& command, const std::string& word) {
   const std::string name = word.substr(0, word.find('='));
-  for (const Missing& missing : kMissingOptions) {
-    if (name == missing.name)
-      fail(fmt::format("{} is not in this build; {}", name, missing.remedy));
-  }
   std::vector<std::string> known;
   for (const OptionRow* row : rows_of(command)) {
     for (const std::string& each : names_of(*row)) known.push_back(each);

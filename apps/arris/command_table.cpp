@@ -68,12 +68,15 @@ CommandRow render_row() {
           "as "
           ".NAME.png to look at"},
          {"--exposure", "STOPS", "brightness of .png and .jpg (default: the scene's, else 0)"},
+         {"--frames", "A..B",
+          "the frames from A up to B, without B, of a scene with keys: -o f_####.png makes "
+          "f_0000.png and so on; without it frame 0 is rendered"},
          {"--stats", "FILE", "write times, counts and memory as JSON; - for stdout"}}},
        {"Picture",
         {{"--size", "WxH", "in pixels (default: the scene's, else 1280x720)"},
          {"--spp", "N", "samples per pixel (default: the scene's, else 64)"},
          {"--time", "SECONDS",
-          "end after this time, with the samples made until then, at least one"},
+          "end after this time, with the samples made until then, at least one; of each frame"},
          {"--max-depth", "N", "bounces of light (default: the scene's, else 8)"},
          {"--seed", "N", "another pattern of noise (default: 0)"},
          {"--samples", "A..B",
@@ -117,7 +120,9 @@ CommandRow render_row() {
        {"arris render part.glb -o part.png --size 512x512 --time 10", "ten seconds' work"},
        {"zcat part.stl.gz | arris render - -o part.png", "a model through a pipe"},
        {"arris render part.obj -o a.exr --samples 0..512",
-        "the first half of a render on two machines"}},
+        "the first half of a render on two machines"},
+       {"arris render turntable.toml -o f_####.png --frames 0..48",
+        "48 frames of a scene with keys"}},
       run_render};
 }
 

@@ -4,6 +4,8 @@
 #include <chrono>
 #include <cmath>
 #include <cstdio>
+#include <memory>
+#include <optional>
 #include <string>
 #include <variant>
 #include <vector>
@@ -12,6 +14,7 @@
 #include "arris/commands.h"
 #include "arris/console.h"
 #include "arris/error.h"
+#include "arris/frame_files.h"
 #include "arris/input.h"
 #include "arris/io.h"
 #include "arris/render_job.h"
@@ -24,6 +27,7 @@
 #include "io/picture_file.h"
 #include "scene/material_presets.h"
 #include "scene/scene_fingerprint.h"
+#include "scene/validate_placement.h"
 
 namespace arris::program {
 namespace {
@@ -52,18 +56,19 @@ void write_stdout(const std::vector<std::uint8_t>& bytes) {
   }
 }
 
-void write_picture(const RenderRequest& request, const JobResult& result, double exposure) {
+void write_picture(const RenderRequest& request, const std::string& output, const JobResult& result,
+                   double exposure) {
   SaveOptions options;
   options.exposure = exposure;
   options.attributes = attributes_of(result.part);
   options.shown_layers = request.shown_layers;
-  if (request.output == "-") {
+  if (output == "-") {
     write_stdout(encode_picture(mean_picture(result.sum), PictureFormat::png, options));
     return;
   }
   const bool is_part = request.is_part || (!result.complete && request.time_limit_seconds == 0);
-  const bool keep_sum = is_part && picture_format(request.output) == PictureFormat::exr;
-  save_picture(keep_sum ? pack_sum(result.sum) : mean_picture(result.sum), request.output, options);
+  const bool keep_sum = is_part && picture_format(output) == PictureFormat::exr;
+  save_picture(keep_sum ? pack_sum(result.sum) : mean_picture(result.sum), output, options);
 }
 
 void write_stats(const std::string& path, const RenderStats& stats) {
@@ -120,9 +125,9 @@ std::string format_work(const JobResult& result) {
                      beam.uncertified_pixels == 1 ? "pixel" : "pixels");
 }
 
-void report_result(Console& console, const RenderRequest& request, const JobResult& result,
+void report_result(Console& console, const std::string& output, const JobResult& result,
                    const Scene& scene) {
-  const std::string target = request.output == "-" ? "stdout" : request.output;
+  const std::string target = output == "-" ? "stdout" : output;
   console.report(fmt::format("{}: {} x {} pixels, {}, {}", target, scene.image.width_px,
                              scene.image.height_px, format_work(result),
                              format_duration(result.seconds)));
@@ -147,14 +152,160 @@ void check_beam_scene(const Scene& scene, const std::string& name) {
   }
 }
 
+// Keys that make no scene of some frame are found before the first is rendered.
+void check_frames(const Scene& scene, FrameRange frames, const std::string& name) {
+  if (!scene.animation.has_keys()) {
+    throw Error(
+        Error::Kind::input, name,
+        "has no keys, so that all frames were one; leave out --frames, or add keys to a "
+        "scene file: [[camera.key]] frame = 0 position = [3, -4, 2], and [[object.key]] and "
+        "[[light.key]] likewise below their [[object]] and [[light]]");
+  }
+  for (int frame = frames.first; frame < frames.last; ++frame) {
+    const std::vector<std::string> problems = validate_placement(scene_at(scene, frame));
+    if (problems.empty()) continue;
+    throw Error(Error::Kind::input, fmt::format("{}: frame {}", name, frame),
+                fmt::format("{}; move the keys around it", fmt::join(problems, "\n  ")));
+  }
+}
+
+void add_beam(std::optional<BeamCounts>& sum, const BeamCounts& frame, std::uint64_t frames) {
+  BeamCounts& all = sum ? *sum : sum.emplace();
+  all.regions += frame.regions;
+  all.rays += frame.rays;
+  all.uncertified_pixels += frame.uncertified_pixels;
+  all.certified_fraction += (frame.certified_fraction - all.certified_fraction) / double(frames);
+}
+
+// The pictures of one run of the program: a single one, or one for each frame.
+class PictureMaker {
+ public:
+  PictureMaker(const RenderRequest& request, Console& console, const std::atomic<bool>& stop)
+      : request_(request),
+        console_(console),
+        stop_(stop),
+        renderer_(make_renderer(request.integrator, request.beam)) {}
+
+  RenderStats stats;
+  std::uint64_t ground_triangles = 0;  // of the scene: not the user's
+
+  void render_single(Scene scene) {
+    const auto prepared = prepare(std::move(scene), Placement::baked);
+    const JobResult result = render(*prepared);
+    save(*prepared, request_.output, result);
+    write_stats_if_asked();
+    report_result(console_, request_.output, result, scene_of(*prepared));
+    if (!stop_ || result.complete) return;
+    throw Error(Error::Kind::failed, "",
+                fmt::format("stopped; the picture holds samples {} of {}..{}",
+                            format_samples(result.part.samples), wanted_.first, wanted_.last));
+  }
+
+  // Frame 0 is prepared first, whichever are rendered: what depends on the view, such as automatic radii, is its.
+  void render_frames(Scene scene, FrameRange frames) {
+    count_ = double(frames.last) - frames.first;
+    auto prepared =
+        prepare(scene, scene.animation.objects.empty() ? Placement::baked : Placement::movable);
+    for (int frame = frames.first; frame < frames.last; ++frame) {
+      end_if_stopped(frames, frame);
+      prepared = prepare_frame(*prepared, scene_at(scene, frame));
+      const std::optional<JobResult> result = try_render(*prepared);
+      if (!result) end_if_stopped(frames, frame);
+      const std::string output = frame_file(request_.output, frame);
+      save(*prepared, output, *result);
+      report_result(console_, output, *result, scene_of(*prepared));
+      ++done_;
+    }
+    write_stats_if_asked();
+  }
+
+ private:
+  std::shared_ptr<const PreparedScene> prepare(Scene scene, Placement placement) {
+    auto prepared = prepare_scene(
+        std::move(scene), {.threads = request_.threads, .stop = &stop_, .placement = placement});
+    stats.prepare = prepare_stats(*prepared);
+    stats.prepare.triangles -= ground_triangles;
+    stats.prepare.objects -= ground_triangles > 0 ? 1 : 0;
+    report_scene(console_, scene_of(*prepared), stats.prepare);
+    report_beam_options(console_, request_.beam, scene_of(*prepared));
+    return prepared;
+  }
+
+  std::shared_ptr<const PreparedScene> prepare_frame(const PreparedScene& before, Scene moved) {
+    auto prepared = prepare_moved(before, std::move(moved),
+                                  {.threads = request_.threads, .placement = Placement::movable});
+    stats.prepare.build_seconds += prepare_stats(*prepared).build_seconds;
+    stats.prepare.round_seconds += prepare_stats(*prepared).round_seconds;
+    return prepared;
+  }
+
+  JobResult render(const PreparedScene& prepared) {
+    RenderJob job = make_job(request_, scene_of(prepared));
+    wanted_ = job.options.samples;
+    job.options.stop = &stop_;
+    job.options.on_progress = [&](const Progress& progress) {
+      console_.show_progress({(double(done_) + progress.done) / count_, begin_.seconds()});
+    };
+    JobResult result = run_job(*renderer_, prepared, job);
+    console_.end_progress();
+    stats.rays.camera += result.rays.camera;
+    stats.rays.total += result.rays.total;
+    stats.rays.rounded += result.rays.rounded;
+    if (result.beam) add_beam(stats.beam, *result.beam, done_ + 1);
+    stats.render_seconds += result.seconds;
+    return result;
+  }
+
+  // Nothing if it was stopped: frames of fewer samples than their neighbours are of no use.
+  std::optional<JobResult> try_render(const PreparedScene& prepared) {
+    try {
+      JobResult result = render(prepared);
+      if (stop_ && !result.complete) return std::nullopt;
+      return result;
+    } catch (const Error&) {
+      if (!stop_) throw;
+      return std::nullopt;
+    }
+  }
+
+  void save(const PreparedScene& prepared, const std::string& output, const JobResult& result) {
+    const Stopwatch write;
+    write_picture(request_, output, result, scene_of(prepared).image.exposure);
+    stats.write_seconds += write.seconds();
+  }
+
+  void write_stats_if_asked() {
+    if (request_.frames) stats.frames = done_;
+    if (request_.stats) write_stats(*request_.stats, stats);
+  }
+
+  void end_if_stopped(FrameRange frames, int frame) {
+    if (!stop_) return;
+    console_.end_progress();
+    throw Error(Error::Kind::failed, "",
+                done_ == 0 ? "stopped before the first frame was finished"
+                           : fmt::format("stopped; frames {}..{} are finished, go on with "
+                                         "--frames {}..{}",
+                                         frames.first, frame, frame, frames.last));
+  }
+
+  const RenderRequest& request_;
+  Console& console_;
+  const std::atomic<bool>& stop_;
+  std::unique_ptr<Renderer> renderer_;
+  const Stopwatch begin_;
+  SampleRange wanted_;
+  double count_ = 1;  // of pictures
+  std::uint64_t done_ = 0;
+};
+
 }  // namespace
 
 int run_render(const Arguments& arguments) {
   if (arguments.find("--material") == "list") return print_materials();
   RenderRequest request = make_render_request(arguments);
   Console console(arguments);
-  const std::atomic<bool>& stop = catch_stop_signals();
-  RenderStats stats;
+  PictureMaker maker(request, console, catch_stop_signals());
 
   const Stopwatch load;
   Input loaded = load_input(request.input, request.load);
@@ -163,37 +314,15 @@ int run_render(const Arguments& arguments) {
   const StagingReport staging = apply_request(loaded.scene, request, arguments);
   if (!staging.problem.empty()) throw Error(Error::Kind::input, loaded.name, staging.problem);
   if (request.integrator == Integrator::beam) check_beam_scene(loaded.scene, loaded.name);
-  stats.load_seconds = load.seconds();
-
-  const auto prepared =
-      prepare_scene(std::move(loaded.scene), {.threads = request.threads, .stop = &stop});
-  const Scene& scene = scene_of(*prepared);
-  stats.prepare = prepare_stats(*prepared);
-  stats.prepare.triangles -= staging.ground_triangles;
-  stats.prepare.objects -= staging.ground_triangles > 0 ? 1 : 0;
-  report_scene(console, scene, stats.prepare);
-  report_beam_options(console, request.beam, scene);
-
-  RenderJob job = make_job(request, scene);
-  job.options.stop = &stop;
-  job.options.on_progress = [&](const Progress& progress) { console.show_progress(progress); };
-  const JobResult result =
-      run_job(*make_renderer(request.integrator, request.beam), *prepared, job);
-  console.end_progress();
-  stats.rays = result.rays;
-  stats.beam = result.beam;
-  stats.render_seconds = result.seconds;
-
-  const Stopwatch write;
-  write_picture(request, result, scene.image.exposure);
-  stats.write_seconds = write.seconds();
-  if (request.stats) write_stats(*request.stats, stats);
-  report_result(console, request, result, scene);
-  if (!stop || result.complete) return 0;
-  throw Error(Error::Kind::failed, "",
-              fmt::format("stopped; the picture holds samples {} of {}..{}",
-                          format_samples(result.part.samples), job.options.samples.first,
-                          job.options.samples.last));
+  if (request.frames) check_frames(loaded.scene, *request.frames, loaded.name);
+  maker.ground_triangles = staging.ground_triangles;
+  maker.stats.load_seconds = load.seconds();
+  if (request.frames) {
+    maker.render_frames(std::move(loaded.scene), *request.frames);
+  } else {
+    maker.render_single(std::move(loaded.scene));
+  }
+  return 0;
 }
 
 }  // namespace arris::program

@@ -8,6 +8,7 @@
 #include <string_view>
 
 #include "arris/error.h"
+#include "arris/frame_files.h"
 #include "arris/output_files.h"
 #include "arris/values.h"
 #include "base/nearest_name.h"
@@ -164,23 +165,49 @@ std::vector<std::string> find_shown_layers(const RenderRequest& request) {
   return shown;
 }
 
-void check_files(const RenderRequest& request) {
+// Of one picture, whose name is `output`.
+void check_files_of(const RenderRequest& request, const std::string& output) {
   std::vector<NamedFile> outputs;
-  if (request.output != "-") {
-    outputs.push_back({"-o", request.output});
-    if (picture_format(request.output) != PictureFormat::exr) {
+  if (output != "-") {
+    outputs.push_back({"-o", output});
+    if (picture_format(output) != PictureFormat::exr) {
       for (const std::string& aov : request.aovs) {
-        outputs.push_back({"--aov " + aov, layer_file(request.output, aov)});
+        outputs.push_back({"--aov " + aov, layer_file(output, aov)});
       }
     }
   }
   for (const std::string& layer : request.shown_layers) {
-    outputs.push_back({"--aov " + layer, shown_layer_file(request.output, layer)});
+    outputs.push_back({"--aov " + layer, shown_layer_file(output, layer)});
   }
   if (request.stats && *request.stats != "-") outputs.push_back({"--stats", *request.stats});
   if (request.checkpoint) outputs.push_back({"--checkpoint", *request.checkpoint});
   const NamedFile input{"INPUT", request.input};
   check_outputs(outputs, {&input, 1});
+}
+
+void check_files(const RenderRequest& request) {
+  if (!request.frames) return check_files_of(request, request.output);
+  for (int frame = request.frames->first; frame < request.frames->last; ++frame) {
+    check_files_of(request, frame_file(request.output, frame));
+  }
+}
+
+std::optional<FrameRange> make_frames(const Arguments& arguments, const std::string& output) {
+  const auto given = find_given(arguments, "--frames");
+  if (!given) return std::nullopt;
+  const FrameRange frames = parse_frames(*given);
+  if (output == "-") {
+    throw Error(Error::Kind::input, "--frames",
+                "needs output files, such as f_####.png, not stdout");
+  }
+  if (arguments.has("--checkpoint")) {
+    throw Error(Error::Kind::input, "--checkpoint",
+                "can't be used with --frames; each frame is a file that is kept when the render is "
+                "stopped: go on with --frames from the first that is missing");
+  }
+  const std::string problem = problem_with_pattern(output);
+  if (!problem.empty()) throw Error(Error::Kind::input, output, problem);
+  return frames;
 }
 
 }  // namespace
@@ -197,6 +224,7 @@ RenderRequest make_render_request(const Arguments& arguments) {
   request.input = arguments.positionals[0];
   request.load = load_options_of(arguments);
   request.output = parse_output(arguments);
+  request.frames = make_frames(arguments, request.output);
   request.integrator = parse_integrator(arguments);
   request.beam = parse_beam_settings(arguments, request.integrator);
   if (request.integrator == Integrator::beam) check_beam_options(arguments);

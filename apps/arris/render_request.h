@@ -11,6 +11,7 @@
 #include "arris/io.h"
 #include "arris/render.h"
 #include "arris/scene.h"
+#include "arris/values.h"
 #include "render/staging.h"
 
 namespace arris::program {
@@ -20,7 +21,8 @@ enum class Integrator { path, beam };
 struct RenderRequest {
   std::string input;  // "-": stdin
   LoadOptions load;
-  std::string output;  // "-": PNG to stdout
+  std::string output;  // "-": PNG to stdout; of frames: a pattern
+  std::optional<FrameRange> frames;
   std::optional<std::string> stats;
   std::optional<std::filesystem::path> checkpoint;
   Integrator integrator = Integrator::path;

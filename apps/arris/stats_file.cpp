@@ -15,6 +15,7 @@ std::uint64_t peak_memory_bytes() {
 std::string stats_json(const RenderStats& stats) {
   const PrepareStats& prepare = stats.prepare;
   nlohmann::ordered_json json;
+  if (stats.frames > 0) json["frames"] = stats.frames;
   json["seconds"] = {{"load", stats.load_seconds},
                      {"build", prepare.build_seconds},
                      {"round", prepare.round_seconds},

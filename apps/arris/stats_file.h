@@ -9,7 +9,9 @@
 
 namespace arris::program {
 
+// Of several frames: seconds, rays and what beams did are sums, the certified fraction is their mean.
 struct RenderStats {
+  std::uint64_t frames = 0;  // 0: a single picture
   double load_seconds = 0, render_seconds = 0, write_seconds = 0;
   PrepareStats prepare;
   RayCounts rays;

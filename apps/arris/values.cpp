@@ -146,6 +146,20 @@ SampleRange parse_samples(const Given& given) {
   return {*first, *last};
 }
 
+FrameRange parse_frames(const Given& given) {
+  const std::vector<std::string> parts = split(given.text, "..");
+  const auto first = to_number<int>(parts[0]);
+  const auto last = parts.size() == 2 ? to_number<int>(parts[1]) : std::nullopt;
+  constexpr int kMost = int(kMaxFrame);
+  if (!first || !last || *first >= *last || *first < -kMost || *last > kMost + 1) {
+    fail(given,
+         fmt::format("no range of frames; use FIRST..END with FIRST below END, from {} to {}, such "
+                     "as 0..48 for frames 0 to 47",
+                     -kMost, kMost));
+  }
+  return {*first, *last};
+}
+
 std::vector<std::string> parse_list(const Given& given) {
   return split(given.text, ",");
 }

@@ -37,6 +37,11 @@ struct Size {
 };
 Size parse_size(const Given& given);            // "WxH"
 SampleRange parse_samples(const Given& given);  // "A..B"
+// Half-open, as samples are.
+struct FrameRange {
+  int first = 0, last = 0;
+};
+FrameRange parse_frames(const Given& given);  // "A..B"
 std::vector<std::string> parse_list(const Given& given);
 
 // The index in `names` of what was given.

@@ -17,6 +17,7 @@
 #include "arris/csg.h"
 #include "arris/ids.h"
 #include "arris/math.h"
+#include "arris/shared_vector.h"
 
 namespace arris {
 
@@ -161,7 +162,7 @@ struct HdrEnvironment {
   std::string name;
   int width_px = 0;
   int height_px = 0;
-  std::vector<Rgb> radiance;  // row 0 is the zenith
+  SharedVector<Rgb> radiance;  // row 0 is the zenith
   double strength = 1;
   double rotation = 0;  // about up
   Vec3d up{0, 0, 1};
@@ -183,14 +184,70 @@ struct ImageSettings {
   enum class Filter { box, tent, gaussian, blackman_harris } filter = Filter::blackman_harris;
 };
 
+// Of translation, angle or scale, how keys are joined.
+enum class Interpolation {
+  smooth,  // Catmull-Rom splines; keys may be unevenly far apart
+  linear,
+};
+inline constexpr double kMaxFrame = 1e6;  // of numbers of frames, and of keys down to minus this
+inline constexpr double kLeastKeyDistance = 1e-3;  // of the keys of one thing, in frames
+
+struct CameraKey {
+  double frame = 0;
+  Camera camera;
+};
+
+struct ObjectKey {
+  double frame = 0;
+  Vec3d translate, rotate_deg, scale{1, 1, 1};  // as make_placement() has them
+};
+// Objects that move together: all those of a file.
+struct ObjectTrack {
+  struct Part {
+    ObjectId object;
+    Affine3d placed_from_object;  // before the key's placement
+  };
+  std::vector<Part> parts;
+  std::vector<ObjectKey> keys;
+};
+
+struct LightKey {
+  double frame = 0;
+  Vec3d position;
+  Vec3d aim;  // a point or a direction, as LightTrack::aim says
+  Vec3d color{1, 1, 1};
+  double strength = 1;  // times the color: intensity, irradiance or radiance
+  Vec2d size{1, 1};     // of area lights
+};
+struct LightTrack {
+  std::size_t light = 0;  // of Scene::lights: its kind, and what keys don't have
+  enum class Aim { target, direction } aim = Aim::direction;
+  Vec3d up{0, 0, 1};  // of area lights: where their height goes
+  std::vector<LightKey> keys;
+};
+
+// What moves from frame to frame. The keys of each thing are in the order of their frames; before the first and after
+// the last the thing stays.
+struct Animation {
+  Interpolation interpolation = Interpolation::smooth;
+  std::vector<CameraKey> camera;
+  std::vector<ObjectTrack> objects;
+  std::vector<LightTrack> lights;
+
+  [[nodiscard]] bool has_keys() const {
+    return !camera.empty() || !objects.empty() || !lights.empty();
+  }
+};
+
 struct Scene {
   std::string name;
-  std::vector<Mesh> meshes;
-  std::vector<CsgTree> csg_trees;
-  std::vector<Material> materials;  // never empty after load
-  std::vector<Texture> textures;
+  SharedVector<Mesh> meshes;
+  SharedVector<CsgTree> csg_trees;
+  SharedVector<Material> materials;  // never empty after load
+  SharedVector<Texture> textures;
   std::vector<Object> objects;
   std::vector<Light> lights;
+  Animation animation;                       // camera, objects and lights are those of frame 0
   std::optional<Camera> camera;              // empty: framed automatically
   std::optional<Environment> environment;    // empty: --lighting decides
   std::optional<RoundingSettings> rounding;  // default of all objects
@@ -199,5 +256,9 @@ struct Scene {
   Vec3d up{0, 0, 1};
   std::vector<std::string> notes;  // what a reader left out, one line each, for the user
 };
+
+// The scene at the time of a frame, which may lie between two: camera, transforms and lights as the keys have them.
+// Between keys it may be invalid (a camera that passes its target): validate_scene() says so.
+Scene scene_at(const Scene& scene, double frame);
 
 }  // namespace arris

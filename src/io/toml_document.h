@@ -48,6 +48,7 @@ class TomlProblems {
 
   void add(TomlPlace place, std::string what);
   [[nodiscard]] bool empty() const { return problems_.empty(); }
+  [[nodiscard]] std::size_t count() const { return problems_.size(); }
   // One line for each problem, in the file's order. Throws Error unless there is none.
   void throw_if_any();
 
@@ -90,6 +91,7 @@ class TomlTableReader {
   [[nodiscard]] const TomlMember* find(std::string_view key);
   [[nodiscard]] bool has(std::string_view key);
   [[nodiscard]] TomlPlace place() const { return place_; }
+  [[nodiscard]] const std::string& title() const { return title_; }
 
   std::optional<bool> boolean(std::string_view key);
   std::optional<double> number(std::string_view key, TomlRange range);

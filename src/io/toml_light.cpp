@@ -6,6 +6,7 @@
 #include "arris/error.h"
 #include "arris/io.h"
 #include "io/toml_scene_parts.h"
+#include "scene/placement.h"
 
 namespace arris {
 namespace {
@@ -26,36 +27,83 @@ constexpr std::array<TomlWord<EnvironmentKind>, 4> kEnvironmentKinds = {
 
 constexpr TomlRange kStrength{0, 1e12};
 
+// A light as a file describes it; keys describe it anew.
+struct LightForm {
+  LightKind kind = LightKind::point;
+  LightKey own;  // what a key that leaves it out has
+  LightTrack::Aim aim = LightTrack::Aim::direction;
+
+  [[nodiscard]] bool has_position() const { return kind != LightKind::directional; }
+  [[nodiscard]] bool has_aim() const { return kind != LightKind::point; }
+  [[nodiscard]] const char* strength_name() const {
+    return kind == LightKind::directional ? "irradiance"
+           : kind == LightKind::area      ? "radiance"
+                                          : "intensity";
+  }
+};
+
 // color times the number under `key`.
 Rgb parse_emission(TomlTableReader& reader, const char* key) {
   const Vec3d color = reader.vec3("color", kTomlNotNegative).value_or(Vec3d(1.0));
   return Rgb(color * reader.number(key, kStrength).value_or(1));
 }
 
-Vec3d parse_required_position(TomlTableReader& reader) {
-  if (!reader.has("position")) reader.report_missing("position");
-  return reader.vec3("position", kTomlCoordinate).value_or(Vec3d(0.0));
-}
-
-// "direction", or from the position to "target".
-Vec3d parse_direction(TomlTableReader& reader, Vec3d position) {
-  const auto target = reader.vec3("target", kTomlCoordinate);
-  const auto direction = reader.direction("direction");
-  if (reader.has("target") == reader.has("direction")) {
-    reader.report("direction", "give either \"direction\" or \"target\"");
-  } else if (target && *target == position) {
-    reader.report("target", "is the light's own position");
-  } else if (target) {
-    return *target - position;
+Vec2d parse_size(TomlTableReader& reader, Vec2d own) {
+  const TomlMember* member = reader.find("size");
+  if (member == nullptr) return own;
+  if (std::holds_alternative<TomlArray>(member->value.data)) {
+    return reader.vec2("size", kTomlPositive).value_or(own);
   }
-  return direction.value_or(Vec3d(0, 0, -1));
+  const auto side = reader.number("size", kTomlPositive);
+  return side ? Vec2d{*side, *side} : own;
 }
 
-SpotLight parse_spot(TomlTableReader& reader) {
+// Of the light itself and of its keys; what is missing is that of `form.own`.
+LightKey parse_look(TomlTableReader& reader, const LightForm& form, TomlProblems& problems) {
+  const std::size_t before = problems.count();
+  LightKey key = form.own;
+  if (form.has_position()) {
+    key.position = reader.vec3("position", kTomlCoordinate).value_or(key.position);
+  }
+  if (form.has_aim()) {
+    key.aim = (form.aim == LightTrack::Aim::target ? reader.vec3("target", kTomlCoordinate)
+                                                   : reader.direction("direction"))
+                  .value_or(key.aim);
+    if (form.aim == LightTrack::Aim::target && key.aim == key.position &&
+        problems.count() == before) {
+      reader.report("target", "is the light's own position");
+    }
+  }
+  if (form.kind == LightKind::area) key.size = parse_size(reader, key.size);
+  key.color = reader.vec3("color", kTomlNotNegative).value_or(key.color);
+  key.strength = reader.number(form.strength_name(), kStrength).value_or(key.strength);
+  return key;
+}
+
+// By "direction", or towards "target": one of them is required.
+LightTrack::Aim parse_aim(TomlTableReader& reader, LightKind kind) {
+  if (kind == LightKind::directional) {
+    if (!reader.has("direction")) reader.report_missing("direction");
+  } else if (reader.has("target") == reader.has("direction")) {
+    reader.report("direction", "give either \"direction\" or \"target\"");
+    if (reader.has("target")) reader.direction("direction");
+  }
+  return reader.has("target") && kind != LightKind::directional ? LightTrack::Aim::target
+                                                                : LightTrack::Aim::direction;
+}
+
+LightForm parse_form(TomlTableReader& reader, LightKind kind, TomlProblems& problems) {
+  LightForm form;
+  form.kind = kind;
+  form.own.aim = {0, 0, -1};
+  if (form.has_position() && !reader.has("position")) reader.report_missing("position");
+  if (form.has_aim()) form.aim = parse_aim(reader, kind);
+  form.own = parse_look(reader, form, problems);
+  return form;
+}
+
+SpotLight parse_spot_angles(TomlTableReader& reader) {
   SpotLight light;
-  light.position = parse_required_position(reader);
-  light.direction = parse_direction(reader, light.position);
-  light.intensity = parse_emission(reader, "intensity");
   const double outer = reader.number("outer_angle", {0, 180, true}).value_or(45);
   const double inner = reader.number("inner_angle", {0, 180}).value_or(0);
   if (inner > outer) {
@@ -66,67 +114,59 @@ SpotLight parse_spot(TomlTableReader& reader) {
   return light;
 }
 
-// Centred at `position` and facing `target`; `up` says which way its height goes.
-void place_area(TomlTableReader& reader, Vec3d up, AreaLight& light) {
-  const Vec3d position = parse_required_position(reader);
-  const Vec3d facing = normalize(parse_direction(reader, position));
-  Vec2d size{1, 1};
-  if (const TomlMember* member = reader.find("size")) {
-    if (std::holds_alternative<TomlArray>(member->value.data)) {
-      size = reader.vec2("size", kTomlPositive).value_or(size);
-    } else {
-      const double side = reader.number("size", kTomlPositive).value_or(1);
-      size = {side, side};
-    }
-  }
-  up = reader.direction("up").value_or(up);
-  Vec3d across = cross(up, facing);
-  if (length(across) < 1e-6 * length(up)) {  // up is along the view: any axis that is not will do
-    across = cross(std::abs(facing.x) < 0.5 ? Vec3d(1, 0, 0) : Vec3d(0, 1, 0), facing);
-  }
-  const Vec3d u = normalize(across);
-  const Vec3d v = cross(facing, u);
-  light.edge_u = u * size.x;
-  light.edge_v = v * size.y;
-  light.corner = position - light.edge_u * 0.5 - light.edge_v * 0.5;
-}
-
-AreaLight parse_area(TomlTableReader& reader, Vec3d up) {
+// By its corner and edges, which no key moves.
+AreaLight parse_cornered_area(TomlTableReader& reader) {
   AreaLight light;
-  if (reader.has("corner")) {
-    light.corner = reader.vec3("corner", kTomlCoordinate).value_or(light.corner);
-    if (!reader.has("edge_u")) reader.report_missing("edge_u");
-    if (!reader.has("edge_v")) reader.report_missing("edge_v");
-    light.edge_u = reader.direction("edge_u").value_or(light.edge_u);
-    light.edge_v = reader.direction("edge_v").value_or(light.edge_v);
-    if (!(length_squared(cross(light.edge_u, light.edge_v)) > 0)) {
-      reader.report("edge_v", "spans no area with edge_u");
-    }
-  } else {
-    place_area(reader, up, light);
+  light.corner = reader.vec3("corner", kTomlCoordinate).value_or(light.corner);
+  if (!reader.has("edge_u")) reader.report_missing("edge_u");
+  if (!reader.has("edge_v")) reader.report_missing("edge_v");
+  light.edge_u = reader.direction("edge_u").value_or(light.edge_u);
+  light.edge_v = reader.direction("edge_v").value_or(light.edge_v);
+  if (!(length_squared(cross(light.edge_u, light.edge_v)) > 0)) {
+    reader.report("edge_v", "spans no area with edge_u");
   }
   light.radiance = parse_emission(reader, "radiance");
+  light.visible_to_camera = reader.boolean("visible").value_or(true);
+  if (reader.has("key")) {
+    reader.report("key", "a light with \"corner\" can't have keys; use position, target and size");
+  }
+  return light;
+}
+
+// What keys don't change: kind, angles, visibility.
+Light parse_fixed_part(TomlTableReader& reader, LightKind kind) {
+  switch (kind) {
+    case LightKind::point:
+      return PointLight{};
+    case LightKind::spot:
+      return parse_spot_angles(reader);
+    case LightKind::directional:
+      return DirectionalLight{};
+    case LightKind::area:
+      break;
+  }
+  AreaLight light;
   light.visible_to_camera = reader.boolean("visible").value_or(true);
   return light;
 }
 
-Light parse_light_of(LightKind kind, TomlTableReader& reader, Vec3d up) {
-  switch (kind) {
-    case LightKind::point: {
-      const Vec3d position = parse_required_position(reader);
-      return PointLight{position, parse_emission(reader, "intensity")};
-    }
-    case LightKind::spot:
-      return parse_spot(reader);
-    case LightKind::directional: {
-      if (!reader.has("direction")) reader.report_missing("direction");
-      const Vec3d direction = reader.direction("direction").value_or(Vec3d(0, 0, -1));
-      return DirectionalLight{direction, parse_emission(reader, "irradiance")};
-    }
-    case LightKind::area:
-      break;
-  }
-  return parse_area(reader, up);
+void parse_described_light(TomlTableReader& reader, LightKind kind,
+                           const TomlSceneContext& context) {
+  Scene& scene = context.scene;
+  const LightForm form = parse_form(reader, kind, context.problems);
+  LightTrack track;
+  track.light = scene.lights.size();
+  track.aim = form.aim;
+  track.up = scene.up;
+  if (kind == LightKind::area) track.up = reader.direction("up").value_or(track.up);
+  Light light = parse_fixed_part(reader, kind);
+  move_light(light, track, form.own);
+  scene.lights.push_back(light);
+  parse_toml_keys(reader, context.problems, [&](TomlTableReader& key_reader, double frame) {
+    track.keys.push_back(parse_look(key_reader, form, context.problems));
+    track.keys.back().frame = frame;
+  });
+  if (!track.keys.empty()) scene.animation.lights.push_back(std::move(track));
 }
 
 // -------------------------------------------------------------------------------- environments
@@ -184,21 +224,23 @@ std::optional<Environment> parse_environment_of(EnvironmentKind kind, TomlTableR
 
 }  // namespace
 
-std::optional<Light> parse_toml_light(const TomlValue& value, std::size_t number,
-                                      const TomlSceneContext& context) {
+void parse_toml_light(const TomlValue& value, std::size_t number, const TomlSceneContext& context) {
   const auto* table = std::get_if<TomlTable>(&value.data);
   const std::string title = fmt::format("light {}", number);
   if (table == nullptr) {
     context.problems.add(value.place, title + ": must be a table, written [[light]]");
-    return std::nullopt;
+    return;
   }
   TomlTableReader reader(*table, value.place, title, context.problems);
   if (!reader.has("type")) reader.report_missing("type");
   const auto kind = reader.word<LightKind>("type", kLightKinds);
-  if (!kind) return std::nullopt;
-  const Light light = parse_light_of(*kind, reader, context.scene.up);
+  if (!kind) return;
+  if (*kind == LightKind::area && reader.has("corner")) {
+    context.scene.lights.push_back(parse_cornered_area(reader));
+  } else {
+    parse_described_light(reader, *kind, context);
+  }
   reader.report_unknown();
-  return light;
 }
 
 std::optional<Environment> parse_toml_environment(const TomlMember& member,

@@ -10,28 +10,14 @@
 #include "io/toml_scene_parts.h"
 #include "io/toml_shape.h"
 #include "scene/limits.h"
+#include "scene/placement.h"
 
 namespace arris {
 namespace {
 
 // Of all shapes of a scene file together: a short file must not fill the memory.
 constexpr std::size_t kMaxShapeTriangles = std::size_t(1) << 24;
-
-Mat3d rotation_matrix(Vec3d deg) {
-  const auto about = [](double angle_deg, auto make) {
-    return make(std::cos(radians(angle_deg)), std::sin(radians(angle_deg)));
-  };
-  const Mat3d x = about(deg.x, [](double c, double s) {
-    return Mat3d{{1, 0, 0}, {0, c, s}, {0, -s, c}};
-  });
-  const Mat3d y = about(deg.y, [](double c, double s) {
-    return Mat3d{{c, 0, -s}, {0, 1, 0}, {s, 0, c}};
-  });
-  const Mat3d z = about(deg.z, [](double c, double s) {
-    return Mat3d{{c, s, 0}, {-s, c, 0}, {0, 0, 1}};
-  });
-  return z * y * x;
-}
+constexpr double kMaxTurnDeg = 1e6;
 
 // 4 rows of 4 numbers.
 std::optional<Affine3d> parse_matrix(TomlTableReader& reader) {
@@ -54,27 +40,39 @@ std::optional<Affine3d> parse_matrix(TomlTableReader& reader) {
   return Affine3d{{column(0), column(1), column(2)}, column(3)};
 }
 
-Affine3d parse_transform(TomlTableReader& reader) {
-  const bool has_parts = reader.has("translate") || reader.has("rotate") || reader.has("scale");
-  const Vec3d translate = reader.vec3("translate", kTomlCoordinate).value_or(Vec3d(0.0));
-  const Vec3d rotate = reader.vec3("rotate", {-1e6, 1e6}).value_or(Vec3d(0.0));
-  Vec3d scale(1.0);
-  if (const TomlMember* member = reader.find("scale")) {
-    scale = std::holds_alternative<TomlArray>(member->value.data)
-                ? reader.vec3("scale", kTomlCoordinate).value_or(scale)
-                : Vec3d(reader.number("scale", kTomlCoordinate).value_or(1));
+// A number or 3 numbers.
+std::optional<Vec3d> parse_scale(TomlTableReader& reader) {
+  const TomlMember* member = reader.find("scale");
+  if (member == nullptr) return std::nullopt;
+  if (std::holds_alternative<TomlArray>(member->value.data)) {
+    return reader.vec3("scale", kTomlCoordinate);
   }
-  Mat3d linear = rotation_matrix(rotate);
-  linear = {linear.x * scale.x, linear.y * scale.y, linear.z * scale.z};
-  Affine3d transform{linear, translate};
+  const auto number = reader.number("scale", kTomlCoordinate);
+  return number ? std::optional(Vec3d(*number)) : std::nullopt;
+}
+
+// translate, rotate and scale; what is missing is that of `own`.
+ObjectKey parse_parts(TomlTableReader& reader, const ObjectKey& own) {
+  ObjectKey key;
+  key.translate = reader.vec3("translate", kTomlCoordinate).value_or(own.translate);
+  key.rotate_deg = reader.vec3("rotate", {-kMaxTurnDeg, kMaxTurnDeg}).value_or(own.rotate_deg);
+  key.scale = parse_scale(reader).value_or(own.scale);
+  return key;
+}
+
+void check_not_flat(TomlTableReader& reader, const Mat3d& linear, const char* key) {
+  if (!is_invertible(linear)) reader.report(key, "flattens the object; use a scale other than 0");
+}
+
+Affine3d parse_transform(TomlTableReader& reader, ObjectKey& own) {
+  const bool has_parts = reader.has("translate") || reader.has("rotate") || reader.has("scale");
+  own = parse_parts(reader, own);
+  Affine3d transform = make_placement(own.translate, own.rotate_deg, own.scale);
   if (reader.has("matrix")) {
     if (has_parts) reader.report("matrix", "give it alone, or translate, rotate and scale");
     transform = parse_matrix(reader).value_or(Affine3d{});
   }
-  if (!is_invertible(transform.linear)) {
-    reader.report(reader.has("matrix") ? "matrix" : "scale",
-                  "flattens the object; use a scale other than 0");
-  }
+  check_not_flat(reader, transform.linear, reader.has("matrix") ? "matrix" : "scale");
   return transform;
 }
 
@@ -93,8 +91,9 @@ void shift_textures(Material& material, std::size_t by) {
 }
 
 template <class T>
-void move_onto(std::vector<T>& from, std::vector<T>& to) {
-  to.insert(to.end(), std::make_move_iterator(from.begin()), std::make_move_iterator(from.end()));
+void move_onto(SharedVector<T>& from, SharedVector<T>& to) {
+  std::vector<T>& out = to.edit();
+  out.insert(out.end(), std::make_move_iterator(from.begin()), std::make_move_iterator(from.end()));
 }
 
 }  // namespace
@@ -112,7 +111,7 @@ void TomlObjects::parse(const TomlValue& value, std::size_t number) {
       *table, value.place,
       text != nullptr ? "object " + in_quotes(*text) : fmt::format("object {}", number),
       context_.problems);
-  const Placement placement = parse_placement(reader);
+  Placement placement = parse_placement(reader);
   if (reader.has("file") == reader.has("shape")) {
     reader.report("file", "give either \"file\" or \"shape\"");
   } else if (reader.has("file")) {
@@ -121,6 +120,34 @@ void TomlObjects::parse(const TomlValue& value, std::size_t number) {
     add_shape(reader, placement);
   }
   if (reader.has("file") || reader.has("shape")) reader.report_unknown();
+  if (!placement.track.keys.empty() && !placement.track.parts.empty()) {
+    context_.scene.animation.objects.push_back(std::move(placement.track));
+  }
+}
+
+// The placement goes last; its keys move all that is placed by it.
+void TomlObjects::place(Object object, Placement& placement) {
+  std::vector<Object>& objects = context_.scene.objects;
+  placement.track.parts.push_back(
+      {ObjectId{std::uint32_t(objects.size())}, object.world_from_object});
+  object.world_from_object = placement.world_from_object * object.world_from_object;
+  objects.push_back(std::move(object));
+}
+
+// Keys are parsed after the object's own translate, rotate and scale.
+std::vector<ObjectKey> TomlObjects::parse_keys(TomlTableReader& reader, const ObjectKey& own) {
+  std::vector<ObjectKey> keys;
+  if (reader.has("key") && reader.has("matrix")) {
+    reader.report("key",
+                  "an object with \"matrix\" can't have keys; use translate, rotate and scale");
+  }
+  parse_toml_keys(reader, context_.problems, [&](TomlTableReader& key_reader, double frame) {
+    ObjectKey key = parse_parts(key_reader, own);
+    key.frame = frame;
+    check_not_flat(key_reader, make_placement({}, {}, key.scale).linear, "scale");
+    keys.push_back(key);
+  });
+  return keys;
 }
 
 TomlObjects::Placement TomlObjects::parse_placement(TomlTableReader& reader) {
@@ -134,7 +161,9 @@ TomlObjects::Placement TomlObjects::parse_placement(TomlTableReader& reader) {
                                 did_you_mean(*material, materials_.names())));
     }
   }
-  placement.world_from_object = parse_transform(reader);
+  ObjectKey own;
+  placement.world_from_object = parse_transform(reader, own);
+  placement.track.keys = parse_keys(reader, own);
   if (const TomlMember* round = reader.find("round")) {
     RoundingSettings defaults = context_.scene.rounding.value_or(RoundingSettings{});
     if (defaults.method == RoundMethod::none) defaults.method = RoundMethod::exact;
@@ -149,7 +178,7 @@ bool TomlObjects::has_room(std::size_t objects, TomlTableReader& reader, const c
   return false;
 }
 
-void TomlObjects::add_shape(TomlTableReader& reader, const Placement& placement) {
+void TomlObjects::add_shape(TomlTableReader& reader, Placement& placement) {
   std::optional<TomlShape> shape = parse_toml_shape(reader);
   if (!shape || !has_room(1, reader, "shape")) return;
   const auto [entry, is_new] =
@@ -169,12 +198,11 @@ void TomlObjects::add_shape(TomlTableReader& reader, const Placement& placement)
   }
   object.mesh = entry->second;
   object.material = placement.material.value_or(MaterialId{0});
-  object.world_from_object = placement.world_from_object;
   object.rounding = placement.rounding;
-  context_.scene.objects.push_back(std::move(object));
+  place(std::move(object), placement);
 }
 
-void TomlObjects::add_file(TomlTableReader& reader, const Placement& placement) {
+void TomlObjects::add_file(TomlTableReader& reader, Placement& placement) {
   const std::optional<std::string> file = reader.string("file");
   if (!file) return;
   const Model* model = find_or_load(*file, reader);
@@ -195,8 +223,7 @@ void TomlObjects::add_file(TomlTableReader& reader, const Placement& placement) 
       }
     }
     if (placement.rounding) object.rounding = placement.rounding;
-    object.world_from_object = placement.world_from_object * object.world_from_object;
-    context_.scene.objects.push_back(std::move(object));
+    place(std::move(object), placement);
   }
 }
 

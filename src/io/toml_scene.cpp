@@ -5,10 +5,12 @@
 #include <algorithm>
 #include <array>
 
+#include "arris/error.h"
 #include "arris/image.h"
 #include "io/mesh_scene.h"
 #include "io/toml_scene_parts.h"
 #include "scene/limits.h"
+#include "scene/validate_placement.h"
 
 namespace arris {
 namespace {
@@ -19,6 +21,9 @@ constexpr std::array<TomlWord<Filter>, 4> kFilters = {
      {"tent", Filter::tent},
      {"gaussian", Filter::gaussian},
      {"blackman_harris", Filter::blackman_harris}}};
+
+constexpr std::array<TomlWord<Interpolation>, 2> kInterpolations = {
+    {{"smooth", Interpolation::smooth}, {"linear", Interpolation::linear}}};
 
 ImageSettings parse_image(const TomlMember& member, TomlProblems& problems) {
   ImageSettings image;
@@ -45,36 +50,6 @@ ImageSettings parse_image(const TomlMember& member, TomlProblems& problems) {
   return image;
 }
 
-std::optional<Camera> parse_camera(const TomlMember& member, Vec3d up, TomlProblems& problems) {
-  const TomlTable* table = as_toml_table(member, problems);
-  if (table == nullptr) return std::nullopt;
-  TomlTableReader reader(*table, member.value.place, "[camera]", problems);
-  Camera camera;
-  if (!reader.has("position")) reader.report_missing("position");
-  const auto position = reader.vec3("position", kTomlCoordinate);
-  camera.position = position.value_or(camera.position);
-  camera.target = reader.vec3("target", kTomlCoordinate).value_or(camera.target);
-  camera.up = reader.direction("up").value_or(up);
-  camera.fov_deg = reader.number("fov", {kMinFovDeg, kMaxFovDeg}).value_or(camera.fov_deg);
-  const Vec3d view = camera.target - camera.position;
-  if (position && !(length_squared(view) > 0)) {
-    reader.report("position", "is the target; move one of them");
-  } else if (position && !(length(cross(normalize(view), normalize(camera.up))) > 1e-9)) {
-    reader.report("up", "is along the view; choose another");
-  }
-  reader.report_unknown();
-  return camera;
-}
-
-// The elements of an array of tables; a report if it is something else.
-const TomlArray& elements_of(const TomlMember& member, TomlProblems& problems) {
-  static const TomlArray kNone;
-  if (const auto* array = std::get_if<TomlArray>(&member.value.data)) return *array;
-  problems.add(member.place, fmt::format("{}: must be an array of tables, written [[{}]]",
-                                         member.key, member.key));
-  return kNone;
-}
-
 class SceneParser {
  public:
   SceneParser(const TomlTable& root, const TomlSceneContext& context)
@@ -87,8 +62,9 @@ class SceneParser {
     if (const auto up = reader_.direction("up")) scene.up = normalize(*up);
     if (const auto* image = reader_.find("image")) scene.image = parse_image(*image, problems);
     if (const auto* camera = reader_.find("camera")) {
-      scene.camera = parse_camera(*camera, scene.up, problems);
+      scene.camera = parse_toml_camera(*camera, scene.up, scene.animation, problems);
     }
+    if (const auto* animation = reader_.find("animation")) parse_animation(*animation);
     if (const auto* environment = reader_.find("environment")) {
       scene.environment = parse_toml_environment(*environment, context_);
     }
@@ -105,14 +81,22 @@ class SceneParser {
   }
 
  private:
+  void parse_animation(const TomlMember& member) {
+    const TomlTable* table = as_toml_table(member, context_.problems);
+    if (table == nullptr) return;
+    TomlTableReader reader(*table, member.value.place, "[animation]", context_.problems);
+    Animation& animation = context_.scene.animation;
+    animation.interpolation = reader.word<Interpolation>("interpolation", kInterpolations)
+                                  .value_or(animation.interpolation);
+    reader.report_unknown();
+  }
+
   void parse_lights() {
     const TomlMember* lights = reader_.find("light");
     if (lights == nullptr) return;
     std::size_t number = 0;
-    for (const TomlValue& value : elements_of(*lights, context_.problems)) {
-      if (auto light = parse_toml_light(value, ++number, context_)) {
-        context_.scene.lights.push_back(*light);
-      }
+    for (const TomlValue& value : toml_elements_of(*lights, context_.problems)) {
+      parse_toml_light(value, ++number, context_);
     }
   }
 
@@ -124,7 +108,7 @@ class SceneParser {
     }
     TomlObjects parser(context_, materials);
     std::size_t number = 0;
-    for (const TomlValue& value : elements_of(*objects, context_.problems)) {
+    for (const TomlValue& value : toml_elements_of(*objects, context_.problems)) {
       parser.parse(value, ++number);
     }
     if (context_.problems.empty() && context_.scene.objects.empty()) {
@@ -155,7 +139,12 @@ Scene read_toml_scene(std::string_view text, const std::string& name,
   const TomlSceneContext context{scene, problems, base_directory, load_model};
   SceneParser(root, context).parse();
   problems.throw_if_any();
-  return scene;
+  if (!scene.animation.has_keys()) return scene;
+  Scene first = scene_at(scene, 0);
+  const std::vector<std::string> wrong = validate_placement(first);
+  if (wrong.empty()) return first;
+  throw Error(Error::Kind::input, name + ": frame 0",
+              fmt::format("{}; move the keys around it", fmt::join(wrong, "\n  ")));
 }
 
 }  // namespace arris

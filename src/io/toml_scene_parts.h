@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <map>
 #include <optional>
 #include <string>
@@ -36,6 +37,17 @@ std::optional<RoundingSettings> parse_toml_rounding(const TomlMember& member,
                                                     const RoundingSettings& defaults,
                                                     TomlProblems& problems);
 
+// The elements of an array of tables; a report if it is something else.
+const TomlArray& toml_elements_of(const TomlMember& member, TomlProblems& problems);
+
+// [[….key]]: visits the keys of a camera, light or object with the number of their frame, in order.
+void parse_toml_keys(TomlTableReader& owner, TomlProblems& problems,
+                     const std::function<void(TomlTableReader& key, double frame)>& visit);
+
+// The camera, and its keys into `animation`.
+std::optional<Camera> parse_toml_camera(const TomlMember& member, Vec3d up, Animation& animation,
+                                        TomlProblems& problems);
+
 // [material.…]: fills scene.materials; number 0 is "default".
 class TomlMaterials {
  public:
@@ -57,8 +69,8 @@ class TomlMaterials {
   std::map<std::tuple<std::string, bool, Texture::Wrap, Texture::Wrap>, TextureId> textures_;
 };
 
-std::optional<Light> parse_toml_light(const TomlValue& value, std::size_t number,
-                                      const TomlSceneContext& context);
+// Into scene.lights, and its keys into scene.animation.
+void parse_toml_light(const TomlValue& value, std::size_t number, const TomlSceneContext& context);
 std::optional<Environment> parse_toml_environment(const TomlMember& member,
                                                   const TomlSceneContext& context);
 
@@ -76,6 +88,7 @@ class TomlObjects {
     std::optional<MaterialId> material;
     std::optional<RoundingSettings> rounding;
     Affine3d world_from_object;
+    ObjectTrack track;  // parts: what has been placed
   };
   struct Model {
     std::vector<Object> objects;  // ids are the scene's
@@ -83,8 +96,10 @@ class TomlObjects {
   };
 
   Placement parse_placement(TomlTableReader& reader);
-  void add_shape(TomlTableReader& reader, const Placement& placement);
-  void add_file(TomlTableReader& reader, const Placement& placement);
+  std::vector<ObjectKey> parse_keys(TomlTableReader& reader, const ObjectKey& own);
+  void add_shape(TomlTableReader& reader, Placement& placement);
+  void add_file(TomlTableReader& reader, Placement& placement);
+  void place(Object object, Placement& placement);
   const Model* find_or_load(const std::string& file, TomlTableReader& reader);
   Model append(Scene model, const std::filesystem::path& path);
   MeshId without_materials(MeshId id);

@@ -24,9 +24,10 @@ void end_if_stopped(const PrepareOptions& options) {
 
 void note_vanished_triangles(Scene& scene) {
   std::uint64_t triangles = 0, drawn = 0;
+  const Scene& read = scene;
   for (const Object& object : scene.objects) {
     if (object.csg) continue;
-    triangles += scene.meshes[object.mesh.index].triangles.size();
+    triangles += read.meshes[object.mesh.index].triangles.size();
     drawn += count_drawn_triangles(scene, object);
   }
   if (drawn == triangles) return;
@@ -165,6 +166,11 @@ std::shared_ptr<const PreparedScene> prepare_again(const PreparedScene& prepared
   }
   SceneRounding rounding = round_scene(prepared.geometry(), scene_default, options);
   return std::make_shared<const PreparedScene>(prepared.shared_geometry(), std::move(rounding));
+}
+
+std::shared_ptr<const PreparedScene> prepare_moved(const PreparedScene& /*prepared*/, Scene moved,
+                                                   const PrepareOptions& options) {
+  return prepare_scene(std::move(moved), options);
 }
 
 const PrepareStats& prepare_stats(const PreparedScene& prepared) {

@@ -116,6 +116,7 @@ void apply_material(Scene& scene, const StageOptions& options) {
 void apply_lighting(Scene& scene, std::optional<Lighting> lighting) {
   if (lighting) {
     scene.lights.clear();
+    scene.animation.lights.clear();
     scene.environment = make_environment(*lighting, scene.up);
   } else if (!scene.environment && scene.lights.empty()) {
     scene.environment = make_environment(Lighting::studio, scene.up);
@@ -124,9 +125,7 @@ void apply_lighting(Scene& scene, std::optional<Lighting> lighting) {
   }
 }
 
-void apply_camera(Scene& scene, const CameraOptions& options) {
-  if (!scene.camera) scene.camera = frame_scene(scene, options.fov_deg.value_or(Camera{}.fov_deg));
-  Camera& camera = *scene.camera;
+void replace_parts(Camera& camera, const CameraOptions& options) {
   camera.position = options.position.value_or(camera.position);
   camera.target = options.target.value_or(camera.target);
   camera.up = options.up.value_or(camera.up);
@@ -135,6 +134,12 @@ void apply_camera(Scene& scene, const CameraOptions& options) {
   const Vec3d view = camera.target - camera.position;
   const bool along_up = length(cross(view, camera.up)) <= 1e-6 * length(view) * length(camera.up);
   if (!options.up && along_up) camera.up = make_ground_frame(camera.up).north;
+}
+
+void apply_camera(Scene& scene, const CameraOptions& options) {
+  if (!scene.camera) scene.camera = frame_scene(scene, options.fov_deg.value_or(Camera{}.fov_deg));
+  replace_parts(*scene.camera, options);
+  for (CameraKey& key : scene.animation.camera) replace_parts(key.camera, options);
 }
 
 double reach_of(Vec3d p) {

@@ -195,7 +195,7 @@ class Fingerprint {
   void add(const HdrEnvironment& environment) {
     add(environment.width_px);
     add(environment.height_px);
-    add(environment.radiance);
+    add(environment.radiance.read());
     add(environment.strength);
     add(environment.rotation);
     add(environment.up);
@@ -231,10 +231,10 @@ class Fingerprint {
 
 std::uint64_t scene_fingerprint(const Scene& scene) {
   Fingerprint fingerprint;
-  fingerprint.add_each(scene.meshes);
-  fingerprint.add_each(scene.csg_trees);
-  fingerprint.add_each(scene.materials);
-  fingerprint.add_each(scene.textures);
+  fingerprint.add_each(scene.meshes.read());
+  fingerprint.add_each(scene.csg_trees.read());
+  fingerprint.add_each(scene.materials.read());
+  fingerprint.add_each(scene.textures.read());
   fingerprint.add_each(scene.objects);
   fingerprint.add_each(scene.lights);
   fingerprint.add(scene.camera);

@@ -13,7 +13,9 @@
 #include "arris/render.h"
 #include "scene/limits.h"
 #include "scene/scene_bounds.h"
+#include "scene/validate_animation.h"
 #include "scene/validate_csg.h"
+#include "scene/validate_placement.h"
 
 namespace arris {
 namespace {
@@ -265,6 +267,23 @@ void check_size(const Scene& scene, Problems& problems) {
   }
 }
 
+// False if there is something wrong with it.
+bool check_transform(const Object& object, const std::string& where, Problems& problems) {
+  const Affine3d& m = object.world_from_object;
+  if (!is_finite(m.linear.x) || !is_finite(m.linear.y) || !is_finite(m.linear.z) ||
+      !usable_coordinate(m.translation)) {
+    problems.push_back(
+        fmt::format("{}: its transform holds what is not a number or is larger than {:g}", where,
+                    kMaxCoordinate));
+    return false;
+  }
+  if (is_invertible(m.linear)) return true;
+  problems.push_back(
+      fmt::format("{}: its transform flattens it (determinant {:g}); use a scale other than 0",
+                  where, determinant(m.linear)));
+  return false;
+}
+
 void check_object(const Scene& scene, std::size_t index, Problems& problems) {
   const Object& object = scene.objects[index];
   const std::string where = name_of(object, index);
@@ -280,17 +299,8 @@ void check_object(const Scene& scene, std::size_t index, Problems& problems) {
     problems.push_back(fmt::format("{}: uses material {}, but there are {}", where,
                                    object.material.index, scene.materials.size()));
   }
-  const Affine3d& m = object.world_from_object;
-  if (!is_finite(m.linear.x) || !is_finite(m.linear.y) || !is_finite(m.linear.z) ||
-      !usable_coordinate(m.translation)) {
-    problems.push_back(
-        fmt::format("{}: its transform holds what is not a number or is larger than {:g}", where,
-                    kMaxCoordinate));
-  } else if (!is_invertible(m.linear)) {
-    problems.push_back(
-        fmt::format("{}: its transform flattens it (determinant {:g}); use a scale other than 0",
-                    where, determinant(m.linear)));
-  } else if (!object.csg && object.mesh.index < scene.meshes.size()) {
+  if (check_transform(object, where, problems) && !object.csg &&
+      object.mesh.index < scene.meshes.size()) {
     check_reach(scene, object, where, problems);
   }
   if (object.rounding) {
@@ -412,6 +422,12 @@ void check_camera(const Camera& camera, Problems& problems) {
   }
 }
 
+void check_lights(const Scene& scene, Problems& problems) {
+  for (std::size_t i = 0; i < scene.lights.size(); ++i) {
+    std::visit(LightProblems{fmt::format("light {}", i), problems}, scene.lights[i]);
+  }
+}
+
 void check_image(const ImageSettings& image, Problems& problems) {
   if (image.width_px < 1 || image.height_px < 1 || image.width_px > kMaxPictureSide ||
       image.height_px > kMaxPictureSide) {
@@ -424,6 +440,16 @@ void check_image(const ImageSettings& image, Problems& problems) {
 }
 
 }  // namespace
+
+std::vector<std::string> validate_placement(const Scene& scene) {
+  Problems problems;
+  for (std::size_t i = 0; i < scene.objects.size(); ++i) {
+    check_transform(scene.objects[i], name_of(scene.objects[i], i), problems);
+  }
+  check_lights(scene, problems);
+  if (scene.camera) check_camera(*scene.camera, problems);
+  return problems;
+}
 
 std::vector<std::string> validate_scene(const Scene& scene) {
   Problems problems;
@@ -446,15 +472,14 @@ std::vector<std::string> validate_scene(const Scene& scene) {
   for (std::size_t i = 0; i < scene.objects.size(); ++i) {
     check_object(scene, i, problems);
   }
-  for (std::size_t i = 0; i < scene.lights.size(); ++i) {
-    std::visit(LightProblems{fmt::format("light {}", i), problems}, scene.lights[i]);
-  }
+  check_lights(scene, problems);
   if (scene.environment) {
     std::visit(EnvironmentProblems{problems}, *scene.environment);
   }
   if (scene.camera) {
     check_camera(*scene.camera, problems);
   }
+  check_animation(scene, problems);
   if (scene.rounding) {
     check_rounding("scene", *scene.rounding, problems);
   }

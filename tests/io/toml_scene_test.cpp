@@ -570,5 +570,117 @@ round={radius="5%"}
   test::change_every_byte(test::bytes_of(text), read_bytes);
 }
 
+// ------------------------------------------------------------------------------------------ keys
+
+TEST(TomlKeys, of_camera_object_and_light_keep_what_they_leave_out) {
+  const Scene scene = read(R"(
+[animation]
+interpolation = "linear"
+[camera]
+position = [1, 2, 3]
+fov = 20
+[[camera.key]]
+frame = -1.5
+[[camera.key]]
+frame = 10
+position = [5, 2, 3]
+fov = 40
+[[light]]
+type = "spot"
+position = [0, 0, 5]
+target = [0, 0, 0]
+intensity = 2
+[[light.key]]
+frame = 0
+[[light.key]]
+frame = 4
+intensity = 6
+color = [1, 0.5, 0]
+[[object]]
+shape = "box"
+translate = [1, 0, 0]
+[[object.key]]
+frame = 0
+[[object.key]]
+frame = 2
+rotate = [0, 0, 90]
+scale = 2
+)");
+  EXPECT_EQ(scene.animation.interpolation, Interpolation::linear);
+  ASSERT_EQ(scene.animation.camera.size(), 2U);
+  EXPECT_EQ(scene.animation.camera[0].camera.position, Vec3d(1, 2, 3));
+  EXPECT_EQ(scene.animation.camera[1].frame, 10);
+  EXPECT_EQ(scene_at(scene, 4.25).camera->position, Vec3d(3, 2, 3));
+  EXPECT_EQ(scene_at(scene, 4.25).camera->fov_deg, 30);
+  EXPECT_EQ(scene_at(scene, -100).camera->fov_deg, 20);
+  const auto& spot = std::get<SpotLight>(scene_at(scene, 2).lights[0]);
+  EXPECT_EQ(spot.intensity, Rgb(4, 3, 2));
+  EXPECT_EQ(spot.direction, Vec3d(0, 0, -5));
+  EXPECT_EQ(scene_at(scene, 0).objects[0].world_from_object, scene.objects[0].world_from_object);
+  const Affine3d at_end = scene_at(scene, 3).objects[0].world_from_object;
+  expect_near(at_end.linear.x, {0, 2, 0});
+  expect_near(at_end.translation, {1, 0, 0});
+}
+
+TEST(TomlKeys, move_all_parts_of_a_file) {
+  const Scene scene = read(R"([[object]]
+file = "two.glb"
+[[object.key]]
+frame = 0
+translate = [0, 1, 0]
+)");
+  expect_near(scene.objects[0].world_from_object.translation, {0, 1, 0});
+  expect_near(scene.objects[1].world_from_object.translation, {0, 1, 5});
+}
+
+TEST(TomlKeys, a_scene_is_that_of_frame_0) {
+  const Scene scene = read(kBox +
+                           "[[object.key]]\nframe = -1\ntranslate = [0, 0, 0]\n"
+                           "[[object.key]]\nframe = 1\ntranslate = [4, 0, 0]\n");
+  expect_near(scene.objects[0].world_from_object.translation, {2, 0, 0});
+}
+
+TEST(TomlKeys, that_make_no_scene_of_frame_0_are_refused) {
+  EXPECT_EQ(refusal(kBox + "[[light]]\ntype = \"directional\"\ndirection = [0, 0, 1]\n"
+                           "[[light.key]]\nframe = -1\n"
+                           "[[light.key]]\nframe = 1\ndirection = [0, 0, -1]\n"),
+            "s.toml: frame 0: light 0: direction is (0, 0, 0); give a vector other than 0; move "
+            "the keys around it");
+}
+
+TEST(TomlKeys, wrong_ones_are_refused_with_their_place) {
+  const auto of_box = [](const std::string& text) { return refusal(kBox + text); };
+  const std::string camera = kBox + "[camera]\nposition = [1, 2, 3]\n";
+  EXPECT_THAT(of_box("[[object.key]]\ntranslate = [1, 2, 3]\n"),
+              HasSubstr("s.toml:3:1: object 1 key 1: \"frame\" is missing"));
+  EXPECT_THAT(
+      of_box("[[object.key]]\nframe = 1\n[[object.key]]\nframe = 1\n"),
+      HasSubstr("s.toml:6:9: object 1 key 2 frame: is 1, after 1; use at least 0.001 more"));
+  EXPECT_THAT(of_box("[[object.key]]\nframe = 2000000\n"),
+              HasSubstr("object 1 key 1 frame: is 2000000; use -1e+06 to 1e+06"));
+  EXPECT_THAT(of_box("[[object.key]]\nframe = nan\n"), HasSubstr("object 1 key 1 frame"));
+  EXPECT_THAT(of_box("[[object.key]]\nframe = 0\nscale = [1, 0, 1]\n"),
+              HasSubstr("object 1 key 1 scale: flattens the object"));
+  EXPECT_THAT(of_box("[[object.key]]\nframe = 0\ntranslat = [1, 0, 1]\n"),
+              HasSubstr("object 1 key 1: unknown key \"translat\"; did you mean \"translate\"?"));
+  EXPECT_THAT(of_box("key = 3\n"), HasSubstr("key: must be an array of tables"));
+  EXPECT_THAT(of_box("key = [1]\n"), HasSubstr("key 1: must be a table with a frame"));
+  EXPECT_THAT(
+      of_box("matrix = [[1,0,0,0],[0,1,0,0],[0,0,1,0],[0,0,0,1]]\n[[object.key]]\nframe = 0\n"),
+      HasSubstr("an object with \"matrix\" can't have keys; use translate, rotate and scale"));
+  EXPECT_THAT(refusal(camera + "[[camera.key]]\nframe = 0\nposition = [0, 0, 0]\n"),
+              HasSubstr("[camera] key 1 position: is the target"));
+  EXPECT_THAT(refusal(camera + "[[camera.key]]\nframe = 0\nfov = 179\n"),
+              HasSubstr("[camera] key 1 fov: is 179"));
+  EXPECT_THAT(refusal(kBox + "[[light]]\ntype = \"point\"\nposition = [0, 0, 1]\n[[light.key]]\n"
+                             "frame = 0\ntarget = [1, 2, 3]\n"),
+              HasSubstr("light 1 key 1: unknown key \"target\""));
+  EXPECT_THAT(refusal(kBox + "[[light]]\ntype = \"area\"\ncorner = [0, 0, 1]\nedge_u = [1, 0, 0]\n"
+                             "edge_v = [0, 1, 0]\n[[light.key]]\nframe = 0\n"),
+              HasSubstr("a light with \"corner\" can't have keys"));
+  EXPECT_THAT(refusal(kBox + "[animation]\ninterpolation = \"smoth\"\n"),
+              HasSubstr("did you mean \"smooth\"?"));
+}
+
 }  // namespace
 }  // namespace arris

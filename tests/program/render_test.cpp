@@ -390,5 +390,131 @@ TEST(Interrupted, a_time_limit_is_no_failure) {
   EXPECT_GT(sample_count(render_part_of(load_picture_file(place / "a.exr"), "a.exr")), 0U);
 }
 
+// ------------------------------------------------------------------------------------------ frames
+
+constexpr const char* kMoving = R"(
+[animation]
+interpolation = "linear"
+[camera]
+position = [0, -9, 0]
+[[camera.key]]
+frame = 0
+[[camera.key]]
+frame = 4
+fov = 70
+[[object]]
+file = "cube.stl"
+round = "auto"
+[[object.key]]
+frame = -2
+translate = [-1, -1, -1]
+[[object.key]]
+frame = 2
+translate = [1, -1, -1]
+)";
+
+Outcome render_frames(const Workplace& place, const std::string& options) {
+  test::write_text(place / "moving.toml", kMoving);
+  return place.arris("render moving.toml --size 40x30 --spp 2 " + options);
+}
+
+TEST(Frames, are_files_with_their_numbers) {
+  const Workplace place;
+  const Outcome run = render_frames(place, "-o f_###.png --aov depth --frames=-2..2");
+  ASSERT_EQ(run.code, 0) << run.err;
+  for (const char* number : {"-02", "-01", "000", "001"}) {
+    const std::string name = std::string("f_") + number;
+    EXPECT_THAT(run.err, HasSubstr(name + ".png: 40 x 30 pixels, samples 0..2"));
+    EXPECT_TRUE(std::filesystem::exists(place / (name + ".png")));
+    EXPECT_TRUE(std::filesystem::exists(place / (name + ".depth.pfm")));
+  }
+  EXPECT_FALSE(std::filesystem::exists(place / "f_002.png"));
+  EXPECT_NE(place.read("f_-02.png"), place.read("f_-01.png"));
+}
+
+TEST(Frames, do_not_depend_on_which_others_are_rendered) {
+  const Workplace place;
+  ASSERT_EQ(render_frames(place, "-o all_#.exr --frames 0..4").code, 0);
+  ASSERT_EQ(render_frames(place, "-o one_#.exr --frames 3..4").code, 0);
+  EXPECT_TRUE(place.read("all_3.exr") == place.read("one_3.exr"));
+}
+
+TEST(Frames, without_the_option_frame_0_is_rendered) {
+  const Workplace place;
+  ASSERT_EQ(render_frames(place, "-o frame_#.pfm --frames 0..1").code, 0);
+  ASSERT_EQ(render_frames(place, "-o single#.pfm").code, 0);
+  const Image frame = load_picture(place / "frame_0.pfm").color;
+  const Image single = load_picture(place / "single#.pfm").color;
+  double difference = 0;
+  for (std::size_t i = 0; i < frame.values.size(); ++i) {
+    difference += std::abs(double(frame.values[i]) - double(single.values[i]));
+  }
+  EXPECT_LT(difference / double(frame.values.size()), 2e-3);  // it is placed another way
+}
+
+TEST(Frames, are_rendered_in_beams_too) {
+  const Workplace place;
+  const Outcome run =
+      render_frames(place, "-o f_#.png --integrator beam --round none --frames 0..2");
+  ASSERT_EQ(run.code, 0) << run.err;
+  EXPECT_THAT(run.err, HasSubstr("f_1.png: 40 x 30 pixels, "));
+}
+
+TEST(Frames, have_statistics_in_sum) {
+  const Workplace place;
+  const Outcome run = render_frames(place, "-o f_#.png --quiet --frames 0..3 --stats -");
+  ASSERT_EQ(run.code, 0) << run.err;
+  const auto stats = nlohmann::json::parse(run.out);
+  EXPECT_EQ(stats["frames"], 3);
+  EXPECT_EQ(stats["rays"]["camera"], 3 * 2 * 40 * 30);
+  EXPECT_EQ(stats["triangles"], 12);
+}
+
+TEST(Frames, never_replace_the_input) {
+  const Workplace place;
+  test::write_text(place / "moving.toml", kMoving);
+  ASSERT_EQ(place.shell("cp moving.toml s_2.png; ln -s s_2.png in.toml").code, 0);
+  const Outcome run = place.arris("render in.toml -o s_#.png --frames 0..4");
+  EXPECT_EQ(run.code, 2);
+  EXPECT_EQ(run.err, "arris: s_2.png: INPUT and -o are one file; name another\n");
+}
+
+TEST(Frames, that_make_no_scene_are_found_before_any_is_rendered) {
+  const Workplace place;
+  test::write_text(place / "turn.toml", R"([camera]
+position = [0, -9, 0]
+[[light]]
+type = "directional"
+direction = [0, 0, -1]
+[[light.key]]
+frame = 0
+[[light.key]]
+frame = 8
+direction = [0, 0, 1]
+[[object]]
+file = "cube.stl"
+)");
+  const Outcome run = place.arris("render turn.toml -o f_#.png --size 40x30 --frames 0..8");
+  EXPECT_EQ(run.code, 2);
+  EXPECT_EQ(run.err,
+            "arris: turn.toml: frame 4: light 0: direction is (0, 0, 0); give a vector other than "
+            "0; move the keys around it\n");
+  EXPECT_FALSE(std::filesystem::exists(place / "f_0.png"));
+}
+
+TEST(Frames, that_are_finished_stay_when_stopped) {
+  const Workplace place;
+  test::write_text(place / "moving.toml", kMoving);
+  const Outcome run = place.shell(
+      "'" ARRIS_BINARY_DIR
+      "/arris' render moving.toml --size 40x30 --time 0.4 -o f_#.png --frames 0..1000 & pid=$!; "
+      "sleep 1.5; kill -TERM $pid; wait $pid");
+  EXPECT_EQ(run.code, 1);
+  EXPECT_THAT(run.err, HasSubstr("arris: stopped; frames 0.."));
+  EXPECT_THAT(run.err, HasSubstr(" are finished, go on with --frames "));
+  EXPECT_EQ(load_picture(place / "f_0.png").color.width_px, 40);
+  EXPECT_FALSE(std::filesystem::exists(place / "f_900.png"));
+}
+
 }  // namespace
 }  // namespace arris
