@@ -4,7 +4,7 @@
 // In / Out   the mesh's own coordinates; edges by their index in the EdgeMesh, in the tree's order
 // Guarantee  finds exactly the edges for which the predicate of edge_mesh.h holds, for every viewpoint: at infinity,
 //            on the surface, within it (tests/edgepoint/edge_tree_test.cpp). Bounds and planes are stored as float; a
-//            sign that is within kTreeMargin of zero is not believed: nodes are entered, edges put to the predicate.
+//            sign that is within kSignMargin of zero is not believed: nodes are entered, edges put to the predicate.
 //            Same tree, same order, with any number of threads.
 // Limits     viewpoints finite. Keeps a reference to the mesh, which must outlive it and not move.
 // Cost       build n log n, parallel; query about proportional to what is found. Const afterwards, queries from any
@@ -23,14 +23,11 @@
 #include <span>
 #include <vector>
 
+#include "edgepoint/bounds_tree.h"
 #include "edgepoint/edge_mesh.h"
+#include "edgepoint/face_bounds.h"
 
 namespace arris {
-
-// Lengths are relative to the mesh's half size, viewpoints are scaled so that neither w nor a coordinate is above 1,
-// normals are unit. Terms of a sign are then at most 2, their sum of three products and what float loses of each
-// factor come to less than 51 units of 2⁻²⁴; the predicate's own error is that of double.
-inline constexpr float kTreeMargin = 64.0F / (1 << 24);
 
 class EdgeTree {
  public:
@@ -47,33 +44,16 @@ class EdgeTree {
       std::span<const HomogeneousPoint> from) const;
   [[nodiscard]] std::uint64_t bytes() const;
 
-  // Normals and positions of faces: minima, and negated maxima, so that a union is twelve minima.
-  struct Bounds {
-    std::array<float, 12> low;  // normal, position, −normal, −position
-  };
-  struct Node {
-    Bounds bounds;
-    std::uint32_t first = 0, count = 0;  // its own edges
-    std::uint32_t size = 1;              // of nodes, itself and all below
-  };
   // Planes n·x = d of both faces of each edge.
   struct Part {
-    std::vector<Node> nodes;
+    std::vector<BoundsNode> nodes;
     std::vector<std::uint32_t> edges;
     std::array<std::vector<float>, 8> planes;  // n0, d0, n1, d1
   };
-  // A viewpoint in the tree's coordinates.
-  struct View {
-    std::array<float, 3> xyz;
-    float w;
-  };
 
  private:
-  [[nodiscard]] std::vector<View> views_of(std::span<const HomogeneousPoint> from) const;
-
   const EdgeMesh* mesh_;
-  Vec3d center_;
-  double half_size_ = 1;
+  UnitFrame frame_;
   std::vector<std::uint32_t> open_;
   Part smooth_, sharp_;
 };

@@ -1,0 +1,125 @@
+#include "edgepoint/shadow_edges.h"
+
+#include <algorithm>
+#include <optional>
+
+#include "base/parallel_for.h"
+
+namespace arris {
+namespace {
+
+struct Stretch {
+  double s0, s1;
+};
+
+// Splits the part of [s0, s1] where nearness is above `limit` from the rest.
+struct Parts {
+  std::optional<Stretch> above, below;
+};
+
+Parts split_at(const EventPiece& p, double limit) {
+  if (p.k0 > limit && p.k1 > limit) return {Stretch{p.s0, p.s1}, std::nullopt};
+  if (p.k0 <= limit && p.k1 <= limit) return {std::nullopt, Stretch{p.s0, p.s1}};
+  const double s = p.s0 + (p.s1 - p.s0) * ((limit - p.k0) / (p.k1 - p.k0));
+  if (p.k0 > limit) return {Stretch{p.s0, s}, Stretch{s, p.s1}};
+  return {Stretch{s, p.s1}, Stretch{p.s0, s}};
+}
+
+// One event after another, with the memory of the one before.
+class EventTracer {
+ public:
+  EventTracer(std::span<const ShadowReceiver> receivers, std::vector<ShadowEdge>& out)
+      : receivers_(receivers), out_(out) {}
+
+  void trace(const ShadowEvent& event) {
+    const std::optional<EventWedge> wedge = make_wedge(event);
+    if (!wedge) return;
+    hidden_.clear();
+    if (event.is_at_vertex() && !find_hidden(event)) return;
+    find_nearest(*wedge, event);
+    for (const EventPiece& p : pieces_.pieces()) {
+      if (const auto shown = split_at(p, wedge->begin + wedge->contact).below) {
+        add_shown(*wedge, event, p, *shown);
+      }
+    }
+  }
+
+ private:
+  void find_nearest(const EventWedge& wedge, const ShadowEvent& event) {
+    pieces_.clear();
+    for (std::uint32_t i = 0; i < receivers_.size(); ++i) {
+      walk_.insert(wedge, event, receivers_[i], i, pieces_);
+    }
+  }
+  // Where something lies between the light's edge and the vertex; whether anything is left.
+  bool find_hidden(const ShadowEvent& event) {
+    const std::optional<EventWedge> wedge = make_wedge_to_light(event);
+    if (!wedge) return false;
+    find_nearest(*wedge, event);
+    double covered = 0;
+    for (const EventPiece& p : pieces_.pieces()) {
+      const auto hidden = split_at(p, wedge->begin + wedge->contact).above;
+      if (!hidden) continue;
+      hidden_.push_back(*hidden);
+      covered += hidden->s1 - hidden->s0;
+    }
+    return covered < 1 - kShortestPiece;
+  }
+  // Adds what of the stretch is not hidden.
+  void add_shown(const EventWedge& wedge, const ShadowEvent& event, const EventPiece& p,
+                 Stretch shown) {
+    for (const Stretch& h : hidden_) {
+      if (h.s1 <= shown.s0 || h.s0 >= shown.s1) continue;
+      add_edge(wedge, event, p, {shown.s0, h.s0});
+      shown.s0 = h.s1;
+    }
+    add_edge(wedge, event, p, shown);
+  }
+  void add_edge(const EventWedge& wedge, const ShadowEvent& event, const EventPiece& p,
+                Stretch shown) {
+    if (!(shown.s1 - shown.s0 > kShortestPiece)) return;
+    const auto at = [&](double s) {
+      return Vec3f(wedge.point(s, std::min(p.nearness(s), wedge.begin)));
+    };
+    out_.push_back({at(shown.s0), at(shown.s1), event.kind, p.receiver});
+  }
+
+  std::span<const ShadowReceiver> receivers_;
+  std::vector<ShadowEdge>& out_;
+  WedgeWalk walk_;
+  NearestPieces pieces_;
+  std::vector<Stretch> hidden_;  // sorted
+};
+
+}  // namespace
+
+std::vector<ShadowEdge> find_shadow_edges(std::span<const ShadowEvent> events,
+                                          std::span<const ShadowReceiver> receivers) {
+  constexpr std::size_t kBlock = 128;
+  const std::size_t blocks = (events.size() + kBlock - 1) / kBlock;
+  std::vector<std::vector<ShadowEdge>> found(blocks);
+  parallel_for(blocks, {}, [&](std::size_t block) {
+    EventTracer tracer(receivers, found[block]);
+    const std::size_t first = block * kBlock;
+    for (const ShadowEvent& event :
+         events.subspan(first, std::min(kBlock, events.size() - first))) {
+      tracer.trace(event);
+    }
+  });
+  std::size_t count = 0;
+  for (const std::vector<ShadowEdge>& f : found) count += f.size();
+  std::vector<ShadowEdge> all;
+  all.reserve(count);
+  for (const std::vector<ShadowEdge>& f : found) all.insert(all.end(), f.begin(), f.end());
+  return all;
+}
+
+std::vector<ShadowEvent> transform(const Affine3d& world_from_blocker,
+                                   std::span<const ShadowEvent> events) {
+  std::vector<ShadowEvent> out;
+  out.reserve(events.size());
+  for (const ShadowEvent& e : events) out.push_back(transform(world_from_blocker, e));
+  return out;
+}
+
+}  // namespace arris

@@ -1,0 +1,346 @@
+#include "edgepoint/shadow_wedge.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+namespace arris {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+// Of the size of the coordinates: what two rounded float positions of one place may be apart, a few times over.
+constexpr double kContact = 4.0 / (1 << 23);
+
+double size_of(Vec3d v) {
+  return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)});
+}
+
+LinearForm form_at(Vec3d direction, Vec3d zero) {
+  return {direction, -dot(direction, zero)};
+}
+
+// The forms of rays r0 and r1 from an apex.
+std::optional<EventWedge> wedge_from(Vec3d apex, Vec3d r0, Vec3d r1) {
+  const Vec3d n = cross(r0, r1);
+  const double n2 = length_squared(n);
+  if (!(n2 > 0)) return std::nullopt;
+  EventWedge w;
+  w.plane = form_at(n / std::sqrt(n2), apex);
+  w.a = form_at(cross(r1, n) / n2, apex);
+  w.b = form_at(cross(n, r0) / n2, apex);
+  w.u = form_at(w.a.direction + w.b.direction, apex);
+  w.apex = apex;
+  w.r = {r0, r1};
+  w.last_u = kInfinity;
+  return w;
+}
+
+std::optional<EventWedge> parallel_wedge(Vec3d o0, Vec3d edge, Vec3d d) {
+  const Vec3d n = cross(edge, d);
+  const double n2 = length_squared(n);
+  if (!(n2 > 0)) return std::nullopt;
+  EventWedge w;
+  w.plane = form_at(n / std::sqrt(n2), o0);
+  w.b = form_at(cross(d, n) / n2, o0);
+  w.a = {-w.b.direction, 1 - w.b.offset};
+  w.u = form_at(cross(n, edge) / n2, o0);
+  w.parallel = true;
+  w.apex = o0;
+  w.r = {edge, d};
+  w.last_u = kInfinity;
+  return w;
+}
+
+double size_of(const ShadowEvent& event) {
+  double size = std::max(size_of(event.origin[0]), size_of(event.origin[1]));
+  for (const HomogeneousPoint& p : event.light) {
+    if (p.w > 0) size = std::max(size, size_of(p.xyz / p.w));
+  }
+  return size;
+}
+
+Vec3d place(const HomogeneousPoint& p) {
+  return p.xyz / p.w;
+}
+
+// A wedge in the coordinates of one receiver: for triangles in double, for boxes in float.
+struct LocalForms {
+  std::array<LinearForm, 4> object;  // plane, a, b, u
+  // The same in the unit frame, scaled so that no value there is above 1.
+  std::array<std::array<float, 4>, 3> direction, size;  // size: absolute
+  std::array<float, 4> offset;
+  double u_scale;
+};
+
+LocalForms local_forms(const EventWedge& w, const ShadowReceiver& receiver) {
+  LocalForms out;
+  const Affine3d& m = receiver.world_from_object;
+  const Mat3d turned = transpose(m.linear);
+  const UnitFrame& frame = receiver.faces->frame();
+  const std::array<const LinearForm*, 4> forms{&w.plane, &w.a, &w.b, &w.u};
+  for (std::size_t i = 0; i < 4; ++i) {
+    const LinearForm form{turned * forms[i]->direction, forms[i]->at(m.translation)};
+    out.object[i] = form;
+    const Vec3d d = form.direction * frame.half_size;
+    const double at_center = form.at(frame.center);
+    const double scale = 1 / (std::abs(d.x) + std::abs(d.y) + std::abs(d.z) + std::abs(at_center));
+    for (std::size_t k = 0; k < 3; ++k) {
+      out.direction[k][i] = float(d[int(k)] * scale);
+      out.size[k][i] = std::abs(out.direction[k][i]);
+    }
+    out.offset[i] = float(at_center * scale);
+    out.u_scale = scale;
+  }
+  return out;
+}
+
+constexpr float kBoxMargin = 16.0F / (1 << 24);
+
+// Nearest u (scaled) of four boxes; infinite where one does not meet the wedge.
+std::array<float, 4> nearest_u(const LocalForms& forms, const FaceNode& node) {
+  std::array<std::array<float, 4>, 4> middle, reach;
+  for (std::size_t i = 0; i < 4; ++i) {
+    for (std::size_t box = 0; box < 4; ++box) {
+      middle[i][box] = forms.direction[0][i] * node.middle[0][box] +
+                       forms.direction[1][i] * node.middle[1][box] +
+                       forms.direction[2][i] * node.middle[2][box] + forms.offset[i];
+      reach[i][box] = forms.size[0][i] * node.reach[0][box] +
+                      forms.size[1][i] * node.reach[1][box] +
+                      forms.size[2][i] * node.reach[2][box] + kBoxMargin;
+    }
+  }
+  std::array<float, 4> u;
+  for (std::size_t box = 0; box < 4; ++box) {
+    // All four at least zero where the wedge may be met.
+    const float inside =
+        std::min(std::min(reach[0][box] - middle[0][box], reach[0][box] + middle[0][box]),
+                 std::min(reach[1][box] + middle[1][box], reach[2][box] + middle[2][box]));
+    u[box] = inside >= 0 ? middle[3][box] - reach[3][box] : std::numeric_limits<float>::infinity();
+  }
+  return u;
+}
+
+// Where the plane meets the side of a triangle.
+struct WedgePoint {
+  double a, b, u;
+};
+
+// Moves `from` to where `coordinate` is zero between both.
+void clip_to(WedgePoint& from, const WedgePoint& to, double WedgePoint::*coordinate) {
+  const double t = from.*coordinate / (from.*coordinate - to.*coordinate);
+  from = {from.a + (to.a - from.a) * t, from.b + (to.b - from.b) * t, from.u + (to.u - from.u) * t};
+  from.*coordinate = 0;
+}
+
+bool clip_to_wedge(WedgePoint& p, WedgePoint& q) {
+  for (double WedgePoint::*coordinate : {&WedgePoint::a, &WedgePoint::b}) {
+    if (p.*coordinate < 0 && q.*coordinate < 0) return false;
+    if (p.*coordinate < 0) {
+      clip_to(p, q, coordinate);
+    } else if (q.*coordinate < 0) {
+      clip_to(q, p, coordinate);
+    }
+  }
+  return true;
+}
+
+// The walk of one wedge down one receiver.
+class Meeting {
+ public:
+  Meeting(const EventWedge& wedge, const ShadowEvent& event, const ShadowReceiver& receiver)
+      : wedge_(wedge),
+        event_(event),
+        receiver_(receiver),
+        forms_(local_forms(wedge, receiver)),
+        mesh_(receiver.faces->mesh()) {
+    const Affine3d object_from_world = inverse(receiver.world_from_object);
+    bool inside = false;
+    for (std::size_t k = 0; k < 2; ++k) {
+      light_[k] = transform(object_from_world, event.light[k]);
+      inside = inside || is_within_bounds(light_[k]);
+    }
+    one_sided_ = mesh_.closed && !inside;
+  }
+
+  [[nodiscard]] const LocalForms& forms() const { return forms_; }
+  [[nodiscard]] std::optional<EventPiece> piece(std::uint32_t face) const {
+    if (receiver_.is_blocker && (face == event_.faces[0] || face == event_.faces[1])) {
+      return std::nullopt;
+    }
+    const Triangle& t = mesh_.triangles[face];
+    std::array<double, 3> side;
+    for (std::size_t k = 0; k < 3; ++k) side[k] = side_of(t[k]);
+    const bool front0 = side[0] >= 0, front1 = side[1] >= 0, front2 = side[2] >= 0;
+    if (front0 == front1 && front1 == front2) return std::nullopt;
+    // The corner that is alone on its side.
+    const std::size_t k = front1 == front2 ? 0 : front0 == front2 ? 1 : 2;
+    const std::size_t i = (k + 1) % 3, j = (k + 2) % 3;
+    WedgePoint p = crossing(t[k], t[i], side[k], side[i]);
+    WedgePoint q = crossing(t[k], t[j], side[k], side[j]);
+    if (!clip_to_wedge(p, q)) return std::nullopt;
+    const std::optional<EventPiece> found = piece_between(p, q);
+    if (!found || is_hidden(face)) return std::nullopt;
+    return found;
+  }
+
+ private:
+  [[nodiscard]] bool is_within_bounds(const HomogeneousPoint& p) const {
+    if (p.w == 0) return false;
+    const Vec3d x = place(p);
+    for (int k = 0; k < 3; ++k) {
+      if (x[k] < mesh_.bounds_min[k] || x[k] > mesh_.bounds_max[k]) return false;
+    }
+    return true;
+  }
+  [[nodiscard]] bool is_hidden(std::uint32_t face) const {
+    return one_sided_ && !is_front(mesh_, face, light_[0]) && !is_front(mesh_, face, light_[1]);
+  }
+  // The beginning's own vertices lie in the plane, whatever rounding says.
+  [[nodiscard]] bool is_end(std::uint32_t v, std::size_t end) const {
+    return receiver_.is_blocker && v == event_.vertex[end];
+  }
+  [[nodiscard]] double side_of(std::uint32_t v) const {
+    if (is_end(v, 0) || is_end(v, 1)) return 0;
+    return forms_.object[0].at(Vec3d(mesh_.vertices[v]));
+  }
+  [[nodiscard]] WedgePoint coordinates(std::uint32_t v) const {
+    const bool first = is_end(v, 0), second = is_end(v, 1);
+    if (first && second) return {0, 0, 0};
+    const double u = wedge_.parallel ? 0 : 1;
+    if (first) return {1, 0, u};
+    if (second) return {0, 1, u};
+    const Vec3d p(mesh_.vertices[v]);
+    return {forms_.object[1].at(p), forms_.object[2].at(p), forms_.object[3].at(p)};
+  }
+  // Same for both triangles at the side: in the order of the vertices.
+  [[nodiscard]] WedgePoint crossing(std::uint32_t v, std::uint32_t w, double side_v,
+                                    double side_w) const {
+    if (w < v) {
+      std::swap(v, w);
+      std::swap(side_v, side_w);
+    }
+    const WedgePoint p = coordinates(v), q = coordinates(w);
+    const double t = side_v / (side_v - side_w);
+    return {p.a + (q.a - p.a) * t, p.b + (q.b - p.b) * t, p.u + (q.u - p.u) * t};
+  }
+  [[nodiscard]] std::optional<EventPiece> piece_between(const WedgePoint& p,
+                                                        const WedgePoint& q) const {
+    EventPiece piece;
+    if (wedge_.parallel) {
+      piece = {p.b, q.b, -p.u, -q.u, 0, 0};
+      if (p.a == 0) piece.s0 = 1;
+      if (q.a == 0) piece.s1 = 1;
+    } else {
+      const double up = p.a + p.b, uq = q.a + q.b;
+      if (!(up > 0) || !(uq > 0)) return std::nullopt;
+      piece = {p.b / up, q.b / uq, 1 / up, 1 / uq, 0, 0};
+    }
+    if (piece.s0 > piece.s1) {
+      std::swap(piece.s0, piece.s1);
+      std::swap(piece.k0, piece.k1);
+    }
+    if (!(piece.s1 - piece.s0 > kShortestPiece)) return std::nullopt;
+    return piece;
+  }
+
+  const EventWedge& wedge_;
+  const ShadowEvent& event_;
+  const ShadowReceiver& receiver_;
+  LocalForms forms_;
+  const EdgeMesh& mesh_;
+  std::array<HomogeneousPoint, 2> light_;
+  bool one_sided_ = false;
+};
+
+// Farthest u that may still show, scaled as nearest_u() is.
+float farthest_u(const EventWedge& wedge, const NearestPieces& pieces, double scale) {
+  const double least = pieces.least_nearness();
+  double u = wedge.last_u;
+  if (wedge.parallel) {
+    u = std::min(u, -least);
+  } else if (least > 0) {
+    u = std::min(u, 1 / least);
+  }
+  return float(u * scale) + kBoxMargin;
+}
+
+}  // namespace
+
+std::optional<EventWedge> make_wedge(const ShadowEvent& event) {
+  const double size = kContact * size_of(event);
+  if (event.is_at_vertex()) {
+    const Vec3d q = event.origin[0];
+    std::optional<EventWedge> w =
+        wedge_from(q, q - place(event.light[0]), q - place(event.light[1]));
+    if (w) w->begin = kInfinity;
+    return w;
+  }
+  const HomogeneousPoint& light = event.light[0];
+  if (light.w == 0) {
+    std::optional<EventWedge> w =
+        parallel_wedge(event.origin[0], event.origin[1] - event.origin[0], -normalize(light.xyz));
+    if (w) w->contact = size;
+    return w;
+  }
+  const Vec3d r0 = event.origin[0] - place(light), r1 = event.origin[1] - place(light);
+  std::optional<EventWedge> w = wedge_from(place(light), r0, r1);
+  if (w) {
+    w->begin = 1;
+    w->contact = size / std::min(length(r0), length(r1));
+  }
+  return w;
+}
+
+std::optional<EventWedge> make_wedge_to_light(const ShadowEvent& event) {
+  const Vec3d q = event.origin[0];
+  const Vec3d r0 = place(event.light[0]) - q, r1 = place(event.light[1]) - q;
+  std::optional<EventWedge> w = wedge_from(q, r0, r1);
+  if (w) {
+    w->begin = 1;
+    w->contact = kContact * size_of(event) / std::min(length(r0), length(r1));
+    w->last_u = 1;
+  }
+  return w;
+}
+
+void WedgeWalk::insert(const EventWedge& wedge, const ShadowEvent& event,
+                       const ShadowReceiver& receiver, std::uint32_t index, NearestPieces& pieces) {
+  const std::vector<FaceNode>& nodes = receiver.faces->nodes();
+  if (nodes.empty()) return;
+  const Meeting meeting(wedge, event, receiver);
+  const double scale = meeting.forms().u_scale;
+  float farthest = farthest_u(wedge, pieces, scale);
+  stack_.assign(1, {0, 0, -std::numeric_limits<float>::infinity()});
+  while (!stack_.empty()) {
+    const Waiting next = stack_.back();
+    stack_.pop_back();
+    if (next.nearest_u > farthest) continue;
+    for (std::uint32_t i = 0; i < next.faces; ++i) {
+      std::optional<EventPiece> piece = meeting.piece(receiver.faces->faces()[next.first + i]);
+      if (!piece) continue;
+      piece->item = next_item_++;
+      piece->receiver = index;
+      pieces.insert(*piece);
+      farthest = farthest_u(wedge, pieces, scale);
+    }
+    if (next.faces == 0)
+      push_boxes(nodes[next.first], nearest_u(meeting.forms(), nodes[next.first]), farthest);
+  }
+}
+
+// The nearest on top.
+void WedgeWalk::push_boxes(const FaceNode& node, const std::array<float, 4>& u, float farthest) {
+  const std::size_t before = stack_.size();
+  for (std::size_t box = 0; box < 4; ++box) {
+    if (!(u[box] <= farthest) || u[box] == std::numeric_limits<float>::infinity()) continue;
+    stack_.push_back({node.first[box], node.count[box], u[box]});
+    for (std::size_t at = stack_.size() - 1; at > before; --at) {
+      if (stack_[at].nearest_u <= stack_[at - 1].nearest_u) break;
+      std::swap(stack_[at], stack_[at - 1]);
+    }
+  }
+}
+
+}  // namespace arris
