@@ -28,13 +28,15 @@ enum class EdgePointShader {
 
 struct EdgePointSettings {
   EdgePointShader shader = EdgePointShader::gi;
-  double density = 0.02;    // new points a frame, in parts of the pixels; above 0, at most 1
+  // New points a frame, in parts of the pixels: above 0, at most 1.
+  double density = 0.02;
   int paths_per_point = 0;  // 0: as many as the shader needs for little noise
-  bool use_edges =
-      true;  // false: points are interpolated across everything, as in the Render Cache
-  bool complex_filter =
-      true;                  // pixels with several edges are reconstructed at twice the resolution
-  bool synchronous = false;  // shading is done within next_frame()
+  // False: points are interpolated across everything, as in the Render Cache.
+  bool use_edges = true;
+  bool shadow_edges = true;  // of lights and the sun
+  // Pixels with several edges are reconstructed at twice the resolution.
+  bool complex_filter = true;
+  bool synchronous = false;    // shading is done within next_frame()
   double first_density = 0.2;  // synchronous: of points before the first frame
   std::uint32_t seed = 0;
   int threads = 0;  // 0: all

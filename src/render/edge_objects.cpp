@@ -95,11 +95,12 @@ void add_light_outlines(const Scene& scene, Vec3d eye, std::vector<WorldEdge>& e
 struct EdgeObjects::MeshEdges {
   EdgeMesh mesh;
   EdgeTree tree;
+  FaceTree faces;
   std::vector<std::uint32_t> sharp;
   bool outward = false;  // closed, with its normals outside: what faces away is hidden
 
   explicit MeshEdges(EdgeMesh made, bool is_outward)
-      : mesh(std::move(made)), tree(mesh), outward(is_outward) {
+      : mesh(std::move(made)), tree(mesh), faces(mesh), outward(is_outward) {
     for (std::uint32_t e = 0; e < mesh.edges.size(); ++e) {
       if (mesh.is_sharp(e)) sharp.push_back(e);
     }
@@ -147,6 +148,12 @@ EdgeObjects::EdgeObjects(const PreparedScene& prepared, int threads) {
     for (const std::uint32_t i : tasks[t].second) {
       objects_[i].mesh = edges;
       objects_[i].rounded = find_rounded(prepared, objects_[i]);
+      for (std::uint32_t e = 0; e < objects_[i].rounded.size(); ++e) {
+        if (objects_[i].rounded[e] == RoundedEdge::no) continue;
+        const MeshEdge& edge = edges->mesh.edges[e];
+        objects_[i].rounded_between.emplace_back(std::minmax(edge.face0, edge.face1));
+      }
+      std::ranges::sort(objects_[i].rounded_between);
     }
   });
 }
@@ -238,6 +245,20 @@ std::vector<WorldEdge> EdgeObjects::find_edges(const PreparedScene& prepared, co
   }
   add_light_outlines(scene, view.eye, edges, totals);
   return edges;
+}
+
+std::optional<EdgeObjects::Parts> EdgeObjects::parts(const PreparedScene& prepared,
+                                                     std::uint32_t object) const {
+  if (object >= objects_.size() || !objects_[object].mesh) return std::nullopt;
+  const ObjectEdges& o = objects_[object];
+  Parts parts;
+  parts.mesh = &o.mesh->mesh;
+  parts.tree = &o.mesh->tree;
+  parts.faces = &o.mesh->faces;
+  parts.world = &prepared.scene().objects[object].world_from_object;
+  if (!o.rounded.empty()) parts.rounding = &prepared.rounding().geometries[o.geometry];
+  parts.rounded_between = o.rounded_between;
+  return parts;
 }
 
 std::uint64_t EdgeObjects::bytes() const {

@@ -6,13 +6,18 @@
 // Source     Bala, Walter, Greenberg (2003), §6.1, §6.2
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <memory>
+#include <optional>
+#include <span>
+#include <utility>
 #include <vector>
 
 #include "edgepoint/edge_mesh.h"
 #include "edgepoint/edge_raster.h"
 #include "edgepoint/edge_tree.h"
+#include "edgepoint/face_tree.h"
 #include "render/prepared_scene.h"
 
 namespace arris {
@@ -29,6 +34,22 @@ class EdgeObjects {
   // In the world. The scene is the one this was made of, or one whose objects, camera and lights have moved since.
   std::vector<WorldEdge> find_edges(const PreparedScene& scene, const PixelView& view, int threads,
                                     EdgeTotals& totals) const;
+  // What shadows need of an object; nothing if it is no mesh. Valid while both are.
+  struct Parts {
+    const EdgeMesh* mesh = nullptr;
+    const EdgeTree* tree = nullptr;
+    const FaceTree* faces = nullptr;
+    const Affine3d* world = nullptr;            // from the object
+    const RoundedGeometry* rounding = nullptr;  // null: sharp
+    // Pairs of faces, the lower first, whose edge is rounded; sorted.
+    std::span<const std::pair<std::uint32_t, std::uint32_t>> rounded_between;
+
+    [[nodiscard]] bool is_rounded_between(std::uint32_t face0, std::uint32_t face1) const {
+      const std::pair<std::uint32_t, std::uint32_t> key = std::minmax(face0, face1);
+      return std::binary_search(rounded_between.begin(), rounded_between.end(), key);
+    }
+  };
+  [[nodiscard]] std::optional<Parts> parts(const PreparedScene& scene, std::uint32_t object) const;
   [[nodiscard]] std::uint64_t bytes() const;
 
  private:
@@ -39,6 +60,7 @@ class EdgeObjects {
     std::shared_ptr<const MeshEdges> mesh;  // null: no edges are known
     std::uint32_t geometry = kNoGeometry;
     std::vector<RoundedEdge> rounded;  // of the mesh's edges; empty: none
+    std::vector<std::pair<std::uint32_t, std::uint32_t>> rounded_between;  // Parts'
   };
 
   static std::vector<RoundedEdge> find_rounded(const PreparedScene& scene,

@@ -2,15 +2,19 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <optional>
 #include <utility>
 #include <vector>
 
 #include "arris/edge_point.h"
 #include "base/parallel_for.h"
+#include "base/sobol.h"
 #include "edgepoint/frame_maker.h"
 #include "edgepoint/sample_plan.h"
 #include "render/edge_objects.h"
 #include "render/point_shader.h"
+#include "render/shadow_finder.h"
+#include "render/shadow_probe.h"
 
 namespace arris {
 namespace {
@@ -23,6 +27,10 @@ double milliseconds_since(Clock::time_point start) {
 
 // Points are kept for what has left the picture, too.
 constexpr double kCachePerPixel = 1.5;
+
+// Of shadows, in one frame: about 50 ms.
+constexpr std::size_t kShadowEvents = 20'000;
+constexpr std::uint32_t kProbeSeed = 0x5bd1e995;
 
 PixelView make_pixel_view(const CameraRays& camera, const ImageSettings& image) {
   return {Vec3d(camera.position), inverse(Mat3d{camera.step_x, camera.step_y, camera.corner}),
@@ -40,6 +48,7 @@ class EdgePointEngine::Impl {
         image_(scene_->scene().image),
         camera_(*scene_->scene().camera),
         objects_(*scene_, settings.threads),
+        lights_(shadow_lights(*scene_)),
         cache_(std::size_t(std::ceil(kCachePerPixel * pixel_count()))),
         maker_(image_.width_px, image_.height_px),
         picture_(image_.width_px, image_.height_px, 3) {}
@@ -56,6 +65,11 @@ class EdgePointEngine::Impl {
     std::vector<WorldEdge> edges;
     if (settings_.use_edges) {
       edges = objects_.find_edges(*scene_, view, settings_.threads, totals);
+    }
+    if (settings_.use_edges && settings_.shadow_edges) {
+      shadows_.update(*scene_, objects_, kShadowEvents);
+      edges.insert(edges.end(), shadows_.edges().begin(), shadows_.edges().end());
+      totals.shadow = shadows_.edges().size();
     }
     stats_.stages.edges = milliseconds_since(start);
     const FrameReport report = maker_.make(
@@ -95,6 +109,7 @@ class EdgePointEngine::Impl {
                                        std::size_t(std::lround(density * pixel_count())), frame_});
     constexpr std::size_t kChunk = 16;
     std::vector<ShadedPoint> points(plan.size());
+    std::vector<std::optional<ShadowTriple>> triples(plan.size());
     std::vector<PathRays> rays((plan.size() + kChunk - 1) / kChunk);
     parallel_for(rays.size(), {.grain = 1, .threads = settings_.threads}, [&](std::size_t chunk) {
       const std::size_t last = std::min(plan.size(), (chunk + 1) * kChunk);
@@ -102,9 +117,15 @@ class EdgePointEngine::Impl {
         const int x = int(plan[i] % std::uint32_t(image_.width_px));
         const int y = int(plan[i] / std::uint32_t(image_.width_px));
         points[i] = shade_point(*scene_, camera, shader_, {x, y, frame_}, rays[chunk]);
+        if (settings_.use_edges && points[i].object != kFarObject) {
+          triples[i] = probe_shadow(*scene_, lights_, make_probe(camera, x, y));
+        }
       }
     });
     cache_.add(points, frame_);
+    for (const std::optional<ShadowTriple>& triple : triples) {
+      if (triple) shadows_.add({&*triple, 1});
+    }
     for (const PathRays& r : rays) {
       stats_.rays.total += r.total;
       stats_.rays.rounded += r.rounded;
@@ -112,6 +133,15 @@ class EdgePointEngine::Impl {
     stats_.rays.camera += plan.size() * std::size_t(shader_.paths);
     stats_.new_points += plan.size();
     stats_.shading_seconds += milliseconds_since(start) / 1e3;
+  }
+
+  [[nodiscard]] ShadowProbe make_probe(const CameraRays& camera, int x, int y) const {
+    Sampler sampler(settings_.seed ^ kProbeSeed, std::uint32_t(x), std::uint32_t(y), frame_);
+    ShadowProbe probe;
+    probe.camera_ray = camera_ray(camera, x + 0.5, y + 0.5);
+    probe.select = sampler.next_1d();
+    probe.place = sampler.next_2d();
+    return probe;
   }
 
   void keep_report(const FrameReport& report, const EdgeTotals& totals) {
@@ -135,6 +165,8 @@ class EdgePointEngine::Impl {
   ImageSettings image_;
   Camera camera_;
   EdgeObjects objects_;
+  ShadowFinder shadows_;
+  std::vector<ShadowLight> lights_;
   PointCache cache_;
   FrameMaker maker_;
   Image picture_;

@@ -1,0 +1,146 @@
+#include "render/shadow_finder.h"
+
+#include <algorithm>
+#include <optional>
+
+#include "render/rounded_edges.h"
+
+namespace arris {
+namespace {
+
+// Where a rounded outline is looked at from for a light at infinity, in sizes of the scene.
+constexpr double kFarAway = 1e5;
+
+HomogeneousPoint from_object(const Affine3d& world, const HomogeneousPoint& light) {
+  return transform(inverse(world), light);
+}
+
+// Events of edges of the mesh that the rounding has not taken, and those of its own outline.
+std::vector<ShadowEvent> rounded_events(const EdgeObjects::Parts& blocker,
+                                        std::span<const ShadowEvent> of_mesh,
+                                        const HomogeneousPoint& light) {
+  std::vector<ShadowEvent> events;
+  for (const ShadowEvent& event : of_mesh) {
+    if (!blocker.is_rounded_between(event.faces[0], event.faces[1])) events.push_back(event);
+  }
+  const double size = length(blocker.mesh->bounds_max - blocker.mesh->bounds_min);
+  const Vec3d eye =
+      light.w > 0 ? light.xyz / light.w
+                  : transform_point(*blocker.world,
+                                    (blocker.mesh->bounds_min + blocker.mesh->bounds_max) * 0.5) +
+                        normalize(light.xyz) * (size * kFarAway);
+  std::vector<WorldEdge> outline;
+  find_rounded_outline(*blocker.rounding, RoundedView{eye, {0, 0, 1}, -1}, outline);
+  for (const WorldEdge& edge : outline) {
+    ShadowEvent event;
+    event.origin = {Vec3d(edge.a), Vec3d(edge.b)};
+    event.light = {light, light};
+    events.push_back(event);
+  }
+  return events;
+}
+
+std::vector<ShadowEvent> find_events(const EdgeObjects::Parts& blocker, const ShadowLight& light) {
+  if (const auto* area = std::get_if<ParallelogramLight>(&light)) {
+    return transform(*blocker.world,
+                     find_shadow_events(*blocker.tree, transform(inverse(*blocker.world), *area)));
+  }
+  const auto& point = std::get<HomogeneousPoint>(light);
+  const std::vector<ShadowEvent> events = transform(
+      *blocker.world, find_shadow_events(*blocker.tree, from_object(*blocker.world, point)));
+  return blocker.rounding == nullptr ? events : rounded_events(blocker, events, point);
+}
+
+}  // namespace
+
+std::vector<ShadowLight> shadow_lights(const PreparedScene& prepared) {
+  std::vector<ShadowLight> lights;
+  for (const Light& light : prepared.scene().lights) {
+    if (const auto* point = std::get_if<PointLight>(&light)) {
+      lights.emplace_back(HomogeneousPoint{point->position, 1});
+    } else if (const auto* spot = std::get_if<SpotLight>(&light)) {
+      lights.emplace_back(HomogeneousPoint{spot->position, 1});
+    } else if (const auto* far = std::get_if<DirectionalLight>(&light)) {
+      lights.emplace_back(HomogeneousPoint{-far->direction, 0});
+    } else {
+      const auto& area = std::get<AreaLight>(light);
+      lights.emplace_back(ParallelogramLight{area.corner, area.edge_u, area.edge_v,
+                                             cross(area.edge_u, area.edge_v)});
+    }
+  }
+  for (const SunDisc& sun : prepared.geometry().lights.environment.suns) {
+    lights.emplace_back(HomogeneousPoint{Vec3d(sun.direction), 0});
+  }
+  return lights;
+}
+
+void ShadowFinder::add(std::span<const ShadowTriple> triples) {
+  for (const ShadowTriple& t : triples) {
+    Pair& pair = pairs_[{t.light, t.blocker}];
+    if (pair.receivers.insert(t.receiver).second) pair.edges_known = false;
+  }
+}
+
+void ShadowFinder::object_moved(std::uint32_t object) {
+  for (auto& [key, pair] : pairs_) {
+    if (key.second == object) pair.events_known = pair.edges_known = false;
+    if (pair.receivers.contains(object)) pair.edges_known = false;
+  }
+}
+
+void ShadowFinder::light_moved(std::uint32_t light) {
+  for (auto& [key, pair] : pairs_) {
+    if (key.first == light) pair.events_known = pair.edges_known = false;
+  }
+}
+
+void ShadowFinder::all_changed() {
+  pairs_.clear();
+}
+
+bool ShadowFinder::update(const PreparedScene& scene, const EdgeObjects& objects,
+                          std::size_t most_events) {
+  bool changed = false, complete = true;
+  std::size_t done = 0;
+  std::optional<std::vector<ShadowLight>> lights;
+  for (auto& [key, pair] : pairs_) {
+    if (pair.edges_known) continue;
+    if (done > most_events) {
+      complete = false;
+      break;
+    }
+    if (!lights) lights = shadow_lights(scene);
+    const auto& [light, blocker] = key;
+    if (light >= lights->size()) continue;
+    const std::optional<EdgeObjects::Parts> parts = objects.parts(scene, blocker);
+    if (!parts) continue;
+    if (!pair.events_known) pair.events = find_events(*parts, (*lights)[light]);
+    std::vector<ShadowReceiver> receivers;
+    for (const std::uint32_t receiver : pair.receivers) {
+      const std::optional<EdgeObjects::Parts> r = objects.parts(scene, receiver);
+      if (r) receivers.push_back({r->faces, *r->world, receiver == blocker});
+    }
+    pair.edges.clear();
+    for (const ShadowEdge& edge : find_shadow_edges(pair.events, receivers)) {
+      pair.edges.push_back({edge.a, edge.b});
+    }
+    done += pair.events.size() * receivers.size();
+    pair.events_known = pair.edges_known = true;
+    changed = true;
+  }
+  if (changed) {
+    edges_.clear();
+    for (const auto& [key, pair] : pairs_) {
+      edges_.insert(edges_.end(), pair.edges.begin(), pair.edges.end());
+    }
+  }
+  return complete;
+}
+
+std::size_t ShadowFinder::triple_count() const {
+  std::size_t count = 0;
+  for (const auto& [key, pair] : pairs_) count += pair.receivers.size();
+  return count;
+}
+
+}  // namespace arris

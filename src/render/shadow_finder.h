@@ -1,0 +1,65 @@
+// shadow_finder.h — shadow edges of a scene, found for what is seen and kept while nothing moves
+// What       The shader tells which object stands between a point that it shades and a light: a triple of light,
+//            blocker and receiver. For each pair of light and blocker the finder keeps the events, and the edges on
+//            all its receivers, which are clipped against each other. What a move changes is found again.
+// Guarantee  the same calls give the same edges in the same order, at any number of threads
+// Limits     casters and receivers are meshes; lights are the scene's own and the sun, not what emits by material.
+//            Shadows of area lights begin at sharp edges, also where the blocker is rounded. The work of one update
+//            is bounded: what does not fit waits for the next.
+// Source     Bala, Walter, Greenberg (2003), §6.3 to §6.5
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <set>
+#include <span>
+#include <tuple>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "edgepoint/edge_raster.h"
+#include "edgepoint/shadow_edges.h"
+#include "render/edge_objects.h"
+#include "render/prepared_scene.h"
+
+namespace arris {
+
+// Lights by number: the scene's own in their order, then the suns of its environment.
+struct ShadowTriple {
+  std::uint32_t light = 0, blocker = 0, receiver = 0;
+
+  friend auto operator<=>(const ShadowTriple&, const ShadowTriple&) = default;
+};
+
+using ShadowLight = std::variant<HomogeneousPoint, ParallelogramLight>;
+std::vector<ShadowLight> shadow_lights(const PreparedScene& scene);
+
+class ShadowFinder {
+ public:
+  void add(std::span<const ShadowTriple> triples);
+  // What has moved since the last update.
+  void object_moved(std::uint32_t object);
+  void light_moved(std::uint32_t light);
+  void all_changed();
+
+  // Finds what is missing, up to about so many events; false if some of it waits.
+  bool update(const PreparedScene& scene, const EdgeObjects& objects, std::size_t most_events);
+  [[nodiscard]] const std::vector<WorldEdge>& edges() const { return edges_; }
+  [[nodiscard]] std::size_t triple_count() const;
+
+ private:
+  struct Pair {
+    std::set<std::uint32_t> receivers;
+    std::vector<ShadowEvent> events;  // in the world
+    std::vector<WorldEdge> edges;
+    bool events_known = false, edges_known = false;
+  };
+  using Key = std::pair<std::uint32_t, std::uint32_t>;  // light, blocker
+
+  std::map<Key, Pair> pairs_;
+  std::vector<WorldEdge> edges_;
+};
+
+}  // namespace arris
