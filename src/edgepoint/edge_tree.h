@@ -10,11 +10,11 @@
 // Cost       build n log n, parallel; query about proportional to what is found. Const afterwards, queries from any
 //            number of threads.
 // Source     Bala, Walter, Greenberg 2003, section 6.4. As there: interval vectors, split on one axis where the
-//            children are smallest, edges whose normals span more than half of their node's stay at the node. Beyond it:
-//            size counts by how many edges a child has, and positions are split on as well as normals, for which of both
-//            promises more (large flat or evenly curved parts have no normals to tell apart); sharp edges, which show
-//            from all of their front, have a tree of their own; nodes lie in depth-first order and say how many to skip, so
-//            that the traversal is a loop; edges are tested by the planes of their faces, many at a time.
+//            children are smallest, edges whose normals span more than half of their node's stay at the node. Beyond
+//            it: size counts by how many edges a child has, and positions are split on as well as normals, for which of
+//            both promises more (large flat or evenly curved parts have no normals to tell apart); sharp edges, which
+//            show from all of their front, have a tree of their own; nodes lie in depth-first order and say how many to
+//            skip, so that the traversal is a loop; edges are tested by the planes of their faces, many at a time.
 #pragma once
 
 #include <array>
