@@ -9,9 +9,8 @@
 //            in a face's plane sees its back.
 // Limits     a triangle of no area, or thinner than float tells, is no face: its two short edges lie between the
 //            faces beyond, its longest edge is left out. Half-edges without a twin count as open, non-manifold ones
-//            as well. Edges between coplanar
-//            faces are silhouettes only by rounding, for viewpoints in that plane: there they lie on the outline
-//            anyway.
+//            as well. Edges between coplanar faces are silhouettes only by rounding, for viewpoints in that plane:
+//            there they lie on the outline anyway.
 // Cost       linear; const afterwards
 // Source     Bala, Walter, Greenberg, "Combining Edges and Points for Interactive High-Quality Rendering", 2003,
 //            sections 6.1 (equation 1, with one vertex for each face, as there) and 6.2

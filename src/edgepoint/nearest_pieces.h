@@ -1,11 +1,11 @@
 // nearest_pieces.h — what along an event is nearest to the light
-// What       keeps, for each s in [0, 1], the segment of those inserted that has the highest nearness; nearness is linear
-//            in s along each segment
+// What       keeps, for each s in [0, 1], the segment of those inserted that has the highest nearness; nearness is
+//            linear in s along each segment
 // Guarantee  pieces are sorted by s and do not overlap; ends of segments stay as they are
 //            (tests/edgepoint/nearest_pieces_test.cpp)
 // Cost       of an insertion: a binary search, and the pieces that it changes or moves
-// Source     Bala, Walter, Greenberg 2003, section 6.5, "Clipping": shadow edges of one event against each other, in one
-//            dimension
+// Source     Bala, Walter, Greenberg 2003, section 6.5, "Clipping": shadow edges of one event against each other, in
+//            one dimension
 // Legend     s position along the event; k nearness at its two ends
 #pragma once
 

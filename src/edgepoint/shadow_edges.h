@@ -1,14 +1,14 @@
 // shadow_edges.h — where shadow events meet receivers
-// What       find_shadow_edges() takes each event to the surfaces that it meets first, seen from the light: these are the
-//            shadow's edges. What lies between the light and the event's beginning takes the event away.
-// In / Out   world coordinates. `receiver`: index into the receivers given. One list of (light, blocker, receivers) at a
-//            time: keep what comes out while none of them moves.
+// What       find_shadow_edges() takes each event to the surfaces that it meets first, seen from the light: these are
+//            the shadow's edges. What lies between the light and the event's beginning takes the event away.
+// In / Out   world coordinates. `receiver`: index into the receivers given. One list of (light, blocker, receivers) at
+//            a time: keep what comes out while none of them moves.
 // Guarantee  along each event, each point is on the receiver nearest to the beginning; same edges in the same order
 //            with any number of threads. On random scenes, visibility of the light changes across edges, and nowhere
 //            else (tests/edgepoint/shadow_edges_test.cpp).
 // Limits     receivers that are not given neither show edges nor hide any: give all that may come first. Closed
-//            receivers are met from their front only, open ones and such as have the light within their bounds from both
-//            sides. A contact within float's rounding of the beginning ends an event there; it is an edge, too.
+//            receivers are met from their front only, open ones and such as have the light within their bounds from
+//            both sides. A contact within float's rounding of the beginning ends an event there; it is an edge, too.
 //            Pieces along a ray of the light have no extent along the event and are left out.
 // Cost       per event about that of one ray through each receiver's tree, parallel over events
 // Source     Bala, Walter, Greenberg 2003, sections 6.4, 6.5

@@ -47,8 +47,8 @@ ShadowEvent ve_wedge(const EdgeMesh& mesh, std::uint32_t edge, const Homogeneous
           {e.face0, e.face1}};
 }
 
-// Positive where the light's corner j lies to the left of the plane through e and corner i; the other way round the same
-// number with the other sign.
+// Positive where the light's corner j lies to the left of the plane through e and corner i; the other way round the
+// same number with the other sign.
 double turn(const EdgeMesh& mesh, const MeshEdge& e, Vec3d li, Vec3d lj) {
   const Vec3d p = position(mesh, e.v0);
   return dot(position(mesh, e.v1) - p, cross(li - p, lj - p));

@@ -1,19 +1,20 @@
 // shadow_events.h — the planes along which the shadow of a mesh begins and ends
-// What       find_shadow_events() lists the events of a light and a blocker: wedges that start at an edge of the blocker
-//            (VE events, from a vertex of the light) or at a vertex of it (EV events, from an edge of the light) and go
-//            on away from the light. Receivers show shadow edges where they meet one (shadow_edges.h).
+// What       find_shadow_events() lists the events of a light and a blocker: wedges that start at an edge of the
+//            blocker (VE events, from a vertex of the light) or at a vertex of it (EV events, from an edge of the
+//            light) and go on away from the light. Receivers show shadow edges where they meet one (shadow_edges.h).
 // In / Out   light and events in the blocker's coordinates; transform() takes them elsewhere
 // Guarantee  VE events: all edges that are silhouettes from a vertex of the light whose plane has the light's other
-//            vertices on one side. Penumbral EV events: all vertices around which the blocker lies on one side of the
-//            plane through an edge of the light, and the light on the other. Both as brute force over all edges and
+//            vertices on one side. Penumbral EV events: all vertices of edges that the light may see as silhouettes,
+//            around which the blocker lies on one side of the plane through an edge of the light, and the light on
+//            the other. Both as brute force over all edges and
 //            vertices finds them; for convex blockers they are the outline of the shadow's hull
 //            (tests/edgepoint/shadow_events_test.cpp). Vertices that lie in a plane are on neither side.
 // Limits     events of three edges (EEE) are not looked for, as in the paper. Edges of a closed blocker that fills more
 //            than half of the space around them cast no shadow while the light is outside, which is believed where the
 //            light is outside the blocker's bounds.
 // Cost       that of EdgeTree's query, and the edges around each vertex found
-// Source     Bala, Walter, Greenberg 2003, section 6.3 and Appendix A. Where we differ: EV events are found around every
-//            vertex of the edges that a point of the light may see as silhouette, not by walking from VE events
+// Source     Bala, Walter, Greenberg 2003, section 6.3 and Appendix A. Where we differ: EV events are found around
+//            every vertex of the edges that a point of the light may see as silhouette, not by walking from VE events
 //            alone: a spike may have EV events and no VE event beside them. Whether an EV plane touches the blocker is
 //            decided by sides of vertices, not by angles. Umbral EV events join two umbral VE events at a concave turn.
 // Legend     e edge, q vertex of the blocker; i, j corners of the light

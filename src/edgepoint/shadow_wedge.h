@@ -2,15 +2,15 @@
 // What       EventWedge: s along the event, and nearness to the light, in which segments of the plane are straight.
 //            WedgeWalk takes it down a receiver's face tree, nearest first.
 // In / Out   world coordinates; pieces carry the number of their receiver
-// Guarantee  neighbouring triangles meet the plane in points that are equal, bit for bit: pieces leave no gaps. Boxes are
-//            judged in float, with a margin of 16 units of 2⁻²⁴ for values that are scaled to at most 1.
+// Guarantee  neighbouring triangles meet the plane in points that are equal, bit for bit: pieces leave no gaps. Boxes
+//            are judged in float, with a margin of 16 units of 2⁻²⁴ for values that are scaled to at most 1.
 // Source     Bala, Walter, Greenberg 2003, sections 6.4 and 6.5. Beyond it: the walk visits the nearer of two nodes
 //            first and leaves out what lies behind what has been found along the whole event.
 // Derivation With the apex A, the rays r0 and r1 and N = r0 × r1, a point of the plane is A + a r0 + b r1 with
-//            a = (r1 × N)·(p − A) / N², b = (N × r0)·(p − A) / N². It lies on the ray r0 + s (r1 − r0), s = b / (a + b),
-//            u = a + b times as far as the ray's vector. A line of the plane, x a + y b = 1, is x (1 − s) + y s = 1 / u:
-//            linear in s and the nearness 1 / u. With parallel rays d from o0 + s (o1 − o0) it is linear in s and u as it
-//            is; the nearness is then −u.
+//            a = (r1 × N)·(p − A) / N², b = (N × r0)·(p − A) / N². It lies on the ray r0 + s (r1 − r0), s = b / (a +
+//            b), u = a + b times as far as the ray's vector. A line of the plane, x a + y b = 1, is x (1 − s) + y s = 1
+//            / u: linear in s and the nearness 1 / u. With parallel rays d from o0 + s (o1 − o0) it is linear in s and
+//            u as it is; the nearness is then −u.
 #pragma once
 
 #include <array>

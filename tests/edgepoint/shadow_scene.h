@@ -119,20 +119,31 @@ inline double distance_to_edges(Vec3d p, std::span<const ShadowEdge> edges, std:
   return best;
 }
 
-// A floor and some boxes, balls and tori above it, touching nothing but each other.
+// A floor and some boxes, balls and tori above it. Solids that reach into each other would show changes of visibility
+// where one's surface enters the other, which nobody sees: none do.
 inline ShadowScene random_shadow_scene(FinderRandom& random) {
   ShadowScene scene;
   scene.add(make_box_mesh({12, 12, 1}), {{}, {0, 0, -0.5}});
-  const auto count = 2 + random() % 3;
-  for (std::size_t i = 0; i < count; ++i) {
+  struct Ball {
+    Vec3d center;
+    double radius;
+  };
+  std::vector<Ball> taken;
+  const auto count = 2 + random() % 4;
+  while (taken.size() < count) {
     const double size = uniform(random, 0.3, 1.2);
-    const Mesh mesh =
-        std::array{make_box_mesh({size, size * 0.7, size * 1.3}), make_icosahedron_mesh(size),
-                   make_torus_mesh(size, 0.4 * size, 12, 8)}[random() % 3];
     Affine3d to_world{random_turn(random), random_point(random, 2)};
-    to_world.translation.z = uniform(random, 2, 5);
-    if (i % 2 == 1) to_world.linear.x = -to_world.linear.x;  // mirrored
-    scene.add(mesh, to_world);
+    to_world.translation.z = uniform(random, 2, 6);
+    const Ball ball{to_world.translation, 1.5 * size};
+    const bool overlaps = std::ranges::any_of(taken, [&](const Ball& b) {
+      return length(b.center - ball.center) < b.radius + ball.radius;
+    });
+    if (overlaps) continue;
+    if (taken.size() % 2 == 1) to_world.linear.x = -to_world.linear.x;  // mirrored
+    taken.push_back(ball);
+    scene.add(std::array{make_box_mesh({size, size * 0.7, size * 1.3}), make_icosahedron_mesh(size),
+                         make_torus_mesh(size, 0.4 * size, 12, 8)}[random() % 3],
+              to_world);
   }
   return scene;
 }
