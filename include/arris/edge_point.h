@@ -57,9 +57,12 @@ struct EdgePointStats {
   } edges;
   std::uint64_t new_points = 0;  // that came since the last frame
   std::uint64_t points = 0;      // in the cache
+  std::uint64_t hidden = 0;      // of them, seen through gaps and left out
   std::uint64_t unresolved = 0;  // pixels that no sample reaches
-  RayCounts rays;                // of shading since the last frame
-  double shading_seconds = 0;    // synchronous: of the new points
+  // In a view that stands still: paths of its own of the pixel that has the fewest.
+  std::uint32_t still_paths = 0;
+  RayCounts rays;              // of shading since the last frame
+  double shading_seconds = 0;  // synchronous: of the new points
   std::uint64_t cache_bytes = 0, image_bytes = 0;
 };
 
@@ -72,6 +75,9 @@ class EdgePointEngine {
   ~EdgePointEngine();
 
   void set_camera(const Camera& camera);
+  // The same objects, some of them elsewhere, with other lights or roundings: what prepare_moved() and
+  // prepare_again() make of the scene before.
+  void set_scene(std::shared_ptr<const PreparedScene> scene);
 
   // The frame of the camera and scene as they are now; valid until the next call.
   const Image& next_frame();

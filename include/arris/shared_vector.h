@@ -1,7 +1,8 @@
 // shared_vector.h — a vector whose copies share their elements until one of them is changed
 // What       copying a Scene costs nothing per triangle or texel. Reading through a const vector never copies the
 //            elements; every access through one that is not const does, if they are shared.
-// Limits     references and iterators end where a std::vector's would, and when the vector is first changed after a copy
+// Limits     references and iterators end where a std::vector's would, and when the vector is first changed after a
+//            copy
 // Cost       a reference count a copy; copies in different threads are independent
 #pragma once
 

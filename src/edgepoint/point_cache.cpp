@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <limits>
 
 #include "base/check.h"
 
@@ -11,7 +12,6 @@ namespace {
 
 constexpr int kMantissaBits = 9, kExponentBias = 15, kMostExponent = 31;
 constexpr std::size_t kNoBlock = ~std::size_t{0};
-constexpr std::uint16_t kForEver = 0x8000;  // frames ago
 
 }  // namespace
 
@@ -71,23 +71,40 @@ PointBlock& PointCache::room_for(bool far, std::uint32_t frame) {
   return block;
 }
 
+void PointCache::put(PointBlock& block, std::uint32_t i, const ShadedPoint& point,
+                     std::uint32_t frame) {
+  block.x[i] = point.position.x;
+  block.y[i] = point.position.y;
+  block.z[i] = point.position.z;
+  block.radiance[i] = pack_radiance(point.radiance);
+  block.object[i] = point.object;
+  block.born[i] = std::uint16_t(frame);
+  const bool is_first = block.count == 1;
+  block.lower = is_first ? point.position : min(block.lower, point.position);
+  block.upper = is_first ? point.position : max(block.upper, point.position);
+}
+
 void PointCache::add(std::span<const ShadedPoint> points, std::uint32_t frame) {
   for (const ShadedPoint& point : points) {
     const bool far = point.object == kFarObject;
+    if (point.replaces != kNoPoint && point.replaces / kPointBlock < blocks_.size()) {
+      PointBlock& old = *blocks_[point.replaces / kPointBlock];
+      const std::uint32_t place = point.replaces % kPointBlock;
+      if (place < old.count) {
+        if (old.is_far == far) {
+          put(old, place, point, frame);
+          continue;
+        }
+        old.x[place] = std::numeric_limits<float>::quiet_NaN();  // it is seen nowhere
+      }
+    }
     PointBlock& block = room_for(far, frame);
-    const std::uint32_t i = block.count++;
-    block.x[i] = point.position.x;
-    block.y[i] = point.position.y;
-    block.z[i] = point.position.z;
-    block.radiance[i] = pack_radiance(point.radiance);
-    block.object[i] = point.object;
-    block.born[i] = std::uint16_t(frame);
-    block.lower = i == 0 ? point.position : min(block.lower, point.position);
-    block.upper = i == 0 ? point.position : max(block.upper, point.position);
+    ++block.count;
+    put(block, block.count - 1, point, frame);
   }
 }
 
-void PointCache::move(std::uint32_t object, const Affine3d& to_from) {
+void PointCache::move(std::uint32_t object, const Affine3d& to_from, std::uint32_t frame) {
   for (const std::unique_ptr<PointBlock>& block : blocks_) {
     bool moved = false;
     for (std::uint32_t i = 0; i < block->count; ++i) {
@@ -96,7 +113,7 @@ void PointCache::move(std::uint32_t object, const Affine3d& to_from) {
       block->x[i] = p.x;
       block->y[i] = p.y;
       block->z[i] = p.z;
-      block->born[i] = std::uint16_t(block->born[i] - kForEver);
+      block->born[i] = std::uint16_t(frame - kStaleAge);
       block->lower = min(block->lower, p);
       block->upper = max(block->upper, p);
       moved = true;

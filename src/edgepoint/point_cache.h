@@ -23,10 +23,16 @@ namespace arris {
 // Of points that lie on no object.
 inline constexpr std::uint32_t kFarObject = 0xffffffff;
 
+// A point's number: its block's times kPointBlock, and its place there.
+using PointNumber = std::uint32_t;
+inline constexpr PointNumber kMostPoints = 1U << 28U;
+inline constexpr PointNumber kNoPoint = ~PointNumber{0};
+
 struct ShadedPoint {
   Vec3f position;  // in the world; of far points: the direction, unit
   Rgb radiance;
   std::uint32_t object = kFarObject;  // the shader's number; kFarObject: the ray left the scene
+  PointNumber replaces = kNoPoint;    // the point that was seen where this was asked for
 };
 
 // Shared exponent, nine bits a channel: 0 to 65408, a step of 1/512 of the largest channel's power of two.
@@ -47,19 +53,18 @@ struct PointBlock {
   Vec3f lower, upper;  // of the positions
 };
 
-// A point's number: its block's times kPointBlock, and its place there.
-using PointNumber = std::uint32_t;
-inline constexpr PointNumber kMostPoints = 1U << 28U;
-
 class PointCache {
  public:
   // Of at least so many points; at most kMostPoints.
   explicit PointCache(std::size_t capacity);
 
-  // Appends points of one frame.
+  // Takes the points of one frame in, those that replace others into their places.
   void add(std::span<const ShadedPoint> points, std::uint32_t frame);
   // Moves the points of an object, and makes them old.
-  void move(std::uint32_t object, const Affine3d& to_from);
+  void move(std::uint32_t object, const Affine3d& to_from, std::uint32_t frame);
+  // Makes points old: those for which is_stale(position) holds, of blocks for which may_hold(lower, upper) does.
+  template <class MayHold, class IsStale>
+  void make_old(std::uint32_t frame, const MayHold& may_hold, const IsStale& is_stale);
   // Forgets all points.
   void clear();
 
@@ -76,11 +81,32 @@ class PointCache {
   [[nodiscard]] std::size_t bytes() const { return blocks_.size() * sizeof(PointBlock); }
 
  private:
+  static void put(PointBlock& block, std::uint32_t place, const ShadedPoint& point,
+                  std::uint32_t frame);
   PointBlock& room_for(bool far, std::uint32_t frame);
 
   std::size_t most_blocks_;
   std::vector<std::unique_ptr<PointBlock>> blocks_;
   std::array<std::size_t, 2> open_{};  // the block being filled: of near points, and of far ones
 };
+
+// The age of points that show what is no longer so; others never get as old.
+inline constexpr std::uint16_t kStaleAge = 0x8000;
+
+inline std::uint16_t age_of(const PointBlock& block, std::uint32_t place, std::uint32_t frame) {
+  return std::uint16_t(frame - block.born[place]);
+}
+
+template <class MayHold, class IsStale>
+void PointCache::make_old(std::uint32_t frame, const MayHold& may_hold, const IsStale& is_stale) {
+  for (const std::unique_ptr<PointBlock>& block : blocks_) {
+    if (block->is_far || block->count == 0 || !may_hold(block->lower, block->upper)) continue;
+    for (std::uint32_t i = 0; i < block->count; ++i) {
+      if (is_stale(Vec3f{block->x[i], block->y[i], block->z[i]})) {
+        block->born[i] = std::uint16_t(frame - kStaleAge);
+      }
+    }
+  }
+}
 
 }  // namespace arris

@@ -21,6 +21,9 @@ constexpr int kPrimaryRows = 4;  // of three
 // Weights of interpolation are at most the kernel's sum, and 1 with a sample of the pixel's own.
 constexpr float kOwnWeight = 1;
 
+// What a pixel wants whose point shows what is no longer so.
+constexpr std::uint8_t kStaleWanted = 160;
+
 class Band {
  public:
   Band(const EdgePointImage& image, const PointCache& cache, const ReconstructionSettings& settings,
@@ -77,8 +80,8 @@ class Band {
         const PointNumber point = keys[x].point();
         const PointBlock& block = cache_.block_of(point);
         color = unpack_radiance(block.radiance[point % kPointBlock]);
-        const auto age = std::uint16_t(settings_.frame - block.born[point % kPointBlock]);
-        ages[x] = std::uint8_t(std::min<std::uint32_t>(age, 255));
+        const std::uint32_t age = age_of(block, point % kPointBlock, settings_.frame);
+        ages[x] = std::uint8_t(age >= kStaleAge ? 255 : std::min(age, 254U));
         if (own) ++report_.seen[point / kPointBlock];
       }
       row.r[x] = color.x;
@@ -154,7 +157,7 @@ class Band {
         // The less is known of it, the more: 200 / (1 + 8 w).
         wanted = std::uint8_t(200 / (1 + 8 * std::min(weight[x], kOwnWeight)));
       } else {
-        wanted = std::uint8_t(1 + ages[x] / 16);
+        wanted = ages[x] == 255 ? kStaleWanted : std::uint8_t(1 + ages[x] / 16);
       }
     }
   }

@@ -147,18 +147,48 @@ EdgeObjects::EdgeObjects(const PreparedScene& prepared, int threads) {
     const auto edges = std::make_shared<const MeshEdges>(make_edge_mesh(welded, options), outward);
     for (const std::uint32_t i : tasks[t].second) {
       objects_[i].mesh = edges;
-      objects_[i].rounded = find_rounded(prepared, objects_[i]);
-      for (std::uint32_t e = 0; e < objects_[i].rounded.size(); ++e) {
-        if (objects_[i].rounded[e] == RoundedEdge::no) continue;
-        const MeshEdge& edge = edges->mesh.edges[e];
-        objects_[i].rounded_between.emplace_back(std::minmax(edge.face0, edge.face1));
-      }
-      std::ranges::sort(objects_[i].rounded_between);
+      set_rounded(prepared, objects_[i]);
     }
   });
 }
 
 EdgeObjects::~EdgeObjects() = default;
+
+void EdgeObjects::set_rounded(const PreparedScene& prepared, ObjectEdges& object) {
+  object.rounded = find_rounded(prepared, object);
+  object.rounded_between.clear();
+  for (std::uint32_t e = 0; e < object.rounded.size(); ++e) {
+    if (object.rounded[e] == RoundedEdge::no) continue;
+    const MeshEdge& edge = object.mesh->mesh.edges[e];
+    object.rounded_between.emplace_back(std::minmax(edge.face0, edge.face1));
+  }
+  std::ranges::sort(object.rounded_between);
+}
+
+bool EdgeObjects::update_roundings(const PreparedScene& before, const PreparedScene& after) {
+  bool changed = false;
+  for (ObjectEdges& object : objects_) {
+    if (!object.mesh) continue;
+    const Rounding* const old = before.rounding().geometries[object.geometry].rounding;
+    const Rounding* const now = after.rounding().geometries[object.geometry].rounding;
+    if (old == now) continue;
+    set_rounded(after, object);
+    // An object that has moved may have been rounded again as it was.
+    changed = changed || old == nullptr || now == nullptr ||
+              old->data().radius != now->data().radius ||
+              old->data().arcs.size() != now->data().arcs.size();
+  }
+  return changed;
+}
+
+Sphere EdgeObjects::bounding_sphere(const PreparedScene& prepared, std::uint32_t object) const {
+  const std::optional<Parts> parts = this->parts(prepared, object);
+  if (!parts) return {};
+  const Vec3d half = (parts->mesh->bounds_max - parts->mesh->bounds_min) * 0.5;
+  const Mat3d& m = parts->world->linear;
+  return {transform_point(*parts->world, parts->mesh->bounds_min + half),
+          length(m.x) * half.x + length(m.y) * half.y + length(m.z) * half.z};
+}
 
 // All edges between the same two planes lie on one line: an edge is rounded if one of the arcs between its faces
 // is beside it.

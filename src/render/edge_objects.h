@@ -22,6 +22,11 @@
 
 namespace arris {
 
+struct Sphere {
+  Vec3d center;
+  double radius = 0;
+};
+
 struct EdgeTotals {
   std::uint64_t silhouette = 0, sharp = 0, shadow = 0;
 };
@@ -50,6 +55,9 @@ class EdgeObjects {
     }
   };
   [[nodiscard]] std::optional<Parts> parts(const PreparedScene& scene, std::uint32_t object) const;
+  // Takes in which edges the other scene's roundings round; true if they are other ones.
+  bool update_roundings(const PreparedScene& before, const PreparedScene& after);
+  [[nodiscard]] Sphere bounding_sphere(const PreparedScene& scene, std::uint32_t object) const;
   [[nodiscard]] std::uint64_t bytes() const;
 
  private:
@@ -63,6 +71,7 @@ class EdgeObjects {
     std::vector<std::pair<std::uint32_t, std::uint32_t>> rounded_between;  // Parts'
   };
 
+  static void set_rounded(const PreparedScene& scene, ObjectEdges& object);
   static std::vector<RoundedEdge> find_rounded(const PreparedScene& scene,
                                                const ObjectEdges& object);
 

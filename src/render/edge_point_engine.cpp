@@ -2,19 +2,21 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <memory>
 #include <optional>
 #include <utility>
 #include <vector>
 
 #include "arris/edge_point.h"
 #include "base/parallel_for.h"
-#include "base/sobol.h"
 #include "edgepoint/frame_maker.h"
 #include "edgepoint/sample_plan.h"
 #include "render/edge_objects.h"
-#include "render/point_shader.h"
+#include "render/shade_plan.h"
+#include "render/shade_workers.h"
 #include "render/shadow_finder.h"
-#include "render/shadow_probe.h"
+#include "render/stale_points.h"
+#include "render/still_film.h"
 
 namespace arris {
 namespace {
@@ -27,14 +29,20 @@ double milliseconds_since(Clock::time_point start) {
 
 // Points are kept for what has left the picture, too.
 constexpr double kCachePerPixel = 1.5;
-
 // Of shadows, in one frame: about 50 ms.
 constexpr std::size_t kShadowEvents = 20'000;
-constexpr std::uint32_t kProbeSeed = 0x5bd1e995;
+// A point's paths and those of its neighbours stand for so many of the pixel's own, in a view that stands still.
+constexpr float kNeighbors = 2;
+// Workers are asked for this much more than they did last time.
+constexpr double kMoreThanDone = 1.5;
 
 PixelView make_pixel_view(const CameraRays& camera, const ImageSettings& image) {
   return {Vec3d(camera.position), inverse(Mat3d{camera.step_x, camera.step_y, camera.corner}),
           image.width_px, image.height_px};
+}
+
+bool is_same(const Camera& a, const Camera& b) {
+  return a.position == b.position && a.target == b.target && a.up == b.up && a.fov_deg == b.fov_deg;
 }
 
 }  // namespace
@@ -48,24 +56,66 @@ class EdgePointEngine::Impl {
         image_(scene_->scene().image),
         camera_(*scene_->scene().camera),
         objects_(*scene_, settings.threads),
-        lights_(shadow_lights(*scene_)),
+        lights_(std::make_shared<const std::vector<ShadowLight>>(shadow_lights(*scene_))),
         cache_(std::size_t(std::ceil(kCachePerPixel * pixel_count()))),
         maker_(image_.width_px, image_.height_px),
-        picture_(image_.width_px, image_.height_px, 3) {}
+        picture_(image_.width_px, image_.height_px, 3),
+        film_(maker_.image().codes.size()),
+        wanted_(film_size(), 255) {
+    if (!settings.synchronous) workers_ = std::make_unique<ShadeWorkers>(settings.threads);
+  }
 
-  void set_camera(const Camera& camera) { camera_ = camera; }
+  void set_camera(const Camera& camera) {
+    if (is_same(camera, camera_)) return;
+    camera_ = camera;
+    view_changed();
+  }
+
+  void set_scene(std::shared_ptr<const PreparedScene> scene);
 
   const Image& next_frame() {
+    if (workers_) workers_->set_paused(true);
     stats_ = {};
     const CameraRays rays = make_camera_rays(camera_, image_);
-    if (frame_ == 0) shade(rays, std::max(settings_.first_density, settings_.density));
+    if (workers_) {
+      collect();
+    } else if (frame_ == 0) {
+      shade_now(*make_plan(rays, std::max(settings_.first_density, settings_.density)));
+    }
+    make_frame(make_pixel_view(rays, image_));
+    ++frame_;
+    ++still_frames_;
+    if (workers_) {
+      workers_->set_plan(make_plan(rays, planned_density()));
+      workers_->set_paused(false);
+    } else {
+      shade_now(*make_plan(rays, settings_.density));
+    }
+    return picture_;
+  }
+
+  [[nodiscard]] const EdgePointStats& stats() const { return stats_; }
+  [[nodiscard]] Image classes_picture() const;
+
+ private:
+  [[nodiscard]] double pixel_count() const {
+    return double(image_.width_px) * double(image_.height_px);
+  }
+  [[nodiscard]] std::size_t film_size() const { return maker_.image().codes.size(); }
+  // The last frame showed the same.
+  [[nodiscard]] bool is_still() const { return still_frames_ > 1; }
+
+  void view_changed() {
+    still_frames_ = 0;
+    ++view_;
+    film_.clear();
+  }
+
+  void make_frame(const PixelView& view) {
     const Clock::time_point start = Clock::now();
-    const PixelView view = make_pixel_view(rays, image_);
     EdgeTotals totals;
     std::vector<WorldEdge> edges;
-    if (settings_.use_edges) {
-      edges = objects_.find_edges(*scene_, view, settings_.threads, totals);
-    }
+    if (settings_.use_edges) edges = objects_.find_edges(*scene_, view, settings_.threads, totals);
     if (settings_.use_edges && settings_.shadow_edges) {
       shadows_.update(*scene_, objects_, kShadowEvents);
       edges.insert(edges.end(), shadows_.edges().begin(), shadows_.edges().end());
@@ -74,90 +124,95 @@ class EdgePointEngine::Impl {
     stats_.stages.edges = milliseconds_since(start);
     const FrameReport report = maker_.make(
         view, edges, cache_, {frame_, settings_.complex_filter, settings_.threads}, picture_);
+    film_.blend_into(picture_, kNeighbors * float(shader_.paths), settings_.threads);
     stats_.stages.total = milliseconds_since(start);
     keep_report(report, totals);
-    shade(rays, settings_.density);
-    ++frame_;
-    return picture_;
   }
 
-  [[nodiscard]] const EdgePointStats& stats() const { return stats_; }
+  [[nodiscard]] double planned_density() const {
+    const double done = double(last_items_) / pixel_count();
+    return std::clamp(kMoreThanDone * done, settings_.density / 8, settings_.density);
+  }
 
-  [[nodiscard]] Image classes_picture() const {
-    Image out(image_.width_px, image_.height_px, 3);
-    const EdgePointImage& image = maker_.image();
-    for (std::size_t i = 0; i < image.codes.size(); ++i) {
-      const PixelCode code = image.codes[i];
-      const bool has_point = !image.points[i].is_none();
-      const float bright = has_point ? 1.0F : 0.4F;
-      out.values[3 * i] = code.is_complex() ? bright : has_point ? 0.15F : 0.0F;
-      out.values[3 * i + 1] = has_point ? 0.15F : 0.0F;
-      out.values[3 * i + 2] = code.is_simple() ? bright : has_point ? 0.15F : 0.0F;
+  [[nodiscard]] std::shared_ptr<const ShadePlan> make_plan(const CameraRays& camera,
+                                                           double density) {
+    auto plan = std::make_shared<ShadePlan>();
+    plan->scene = scene_;
+    if (settings_.use_edges && settings_.shadow_edges) plan->lights = lights_;
+    plan->camera = camera;
+    plan->filter = PixelFilter(image_.filter);
+    plan->shader = shader_;
+    plan->width_px = image_.width_px;
+    plan->frame = frame_;
+    plan->view = view_;
+    const auto count = std::size_t(std::lround(density * pixel_count()));
+    std::copy(maker_.wanted().begin(), maker_.wanted().end(), wanted_.begin());
+    if (is_still()) add_still_wishes();
+    for (const std::uint32_t pixel :
+         plan_samples(wanted_, {image_.width_px, image_.height_px, count, frame_})) {
+      const PointKey seen = maker_.image().points[pixel];
+      ShadePlan::Item item{pixel, seen.is_none() ? kNoPoint : seen.point(), kNoPoint};
+      if (is_still() && maker_.wanted()[pixel] < kUrgent) item.first_path = film_.paths_of(pixel);
+      plan->items.push_back(item);
     }
-    return out;
+    // Where the plan begins changes, as its end may not be reached.
+    if (workers_ && !plan->items.empty()) {
+      const std::size_t step = plan->items.size() * (frame_ * 5 % 8) / 8;
+      std::rotate(plan->items.begin(), plan->items.begin() + std::ptrdiff_t(step),
+                  plan->items.end());
+    }
+    return plan;
   }
 
- private:
-  [[nodiscard]] double pixel_count() const {
-    return double(image_.width_px) * double(image_.height_px);
+  // Pixels that have what they need of points want paths.
+  void add_still_wishes() {
+    std::vector<std::uint8_t> wishes(wanted_.size());
+    film_.fill_wanted(wishes, settings_.threads);
+    for (std::size_t i = 0; i < wanted_.size(); ++i) {
+      if (wanted_[i] < kUrgent) wanted_[i] = wishes[i];
+    }
   }
 
-  void shade(const CameraRays& camera, double density) {
+  void shade_now(const ShadePlan& plan) {
     const Clock::time_point start = Clock::now();
-    const std::vector<std::uint32_t> plan =
-        plan_samples(maker_.wanted(), {image_.width_px, image_.height_px,
-                                       std::size_t(std::lround(density * pixel_count())), frame_});
-    constexpr std::size_t kChunk = 16;
-    std::vector<ShadedPoint> points(plan.size());
-    std::vector<std::optional<ShadowTriple>> triples(plan.size());
-    std::vector<PathRays> rays((plan.size() + kChunk - 1) / kChunk);
-    parallel_for(rays.size(), {.grain = 1, .threads = settings_.threads}, [&](std::size_t chunk) {
-      const std::size_t last = std::min(plan.size(), (chunk + 1) * kChunk);
-      for (std::size_t i = chunk * kChunk; i < last; ++i) {
-        const int x = int(plan[i] % std::uint32_t(image_.width_px));
-        const int y = int(plan[i] / std::uint32_t(image_.width_px));
-        points[i] = shade_point(*scene_, camera, shader_, {x, y, frame_}, rays[chunk]);
-        if (settings_.use_edges && points[i].object != kFarObject) {
-          triples[i] = probe_shadow(*scene_, lights_, make_probe(camera, x, y));
-        }
-      }
+    std::vector<ShadeResults> parts((plan.items.size() + ShadePlan::kStep - 1) / ShadePlan::kStep);
+    parallel_for(parts.size(), {.grain = 1, .threads = settings_.threads}, [&](std::size_t part) {
+      const std::size_t first = part * ShadePlan::kStep;
+      const std::size_t last = std::min(plan.items.size(), first + ShadePlan::kStep);
+      for (std::size_t i = first; i < last; ++i) shade_item(plan, plan.items[i], parts[part]);
     });
-    cache_.add(points, frame_);
-    for (const std::optional<ShadowTriple>& triple : triples) {
-      if (triple) shadows_.add({&*triple, 1});
-    }
-    for (const PathRays& r : rays) {
-      stats_.rays.total += r.total;
-      stats_.rays.rounded += r.rounded;
-    }
-    stats_.rays.camera += plan.size() * std::size_t(shader_.paths);
-    stats_.new_points += plan.size();
+    for (const ShadeResults& part : parts) take(plan, part);
     stats_.shading_seconds += milliseconds_since(start) / 1e3;
   }
 
-  [[nodiscard]] ShadowProbe make_probe(const CameraRays& camera, int x, int y) const {
-    Sampler sampler(settings_.seed ^ kProbeSeed, std::uint32_t(x), std::uint32_t(y), frame_);
-    ShadowProbe probe;
-    probe.camera_ray = camera_ray(camera, x + 0.5, y + 0.5);
-    probe.select = sampler.next_1d();
-    probe.place = sampler.next_2d();
-    return probe;
+  void collect() {
+    std::uint64_t items = 0;
+    for (const ShadeWorkers::Batch& batch : workers_->collect()) {
+      take(*batch.plan, batch.results);
+      items += batch.results.items;
+    }
+    last_items_ = items;
   }
 
-  void keep_report(const FrameReport& report, const EdgeTotals& totals) {
-    EdgePointStats::Stages& stages = stats_.stages;
-    stages.points = report.times.points;
-    stages.raster = report.times.raster;
-    stages.reachability = report.times.reachability;
-    stages.interpolation = report.times.interpolation;
-    stages.antialias = report.times.antialias;
-    stages.complex = report.times.complex;
-    stats_.classes = {report.classes.empty, report.classes.simple, report.classes.complex};
-    stats_.edges = {totals.silhouette, totals.sharp, totals.shadow};
-    stats_.points = cache_.size();
-    stats_.unresolved = report.unresolved;
-    stats_.cache_bytes = cache_.bytes();
+  void take(const ShadePlan& plan, const ShadeResults& results) {
+    // What was shaded in a scene that has changed since shows things where they no longer are.
+    if (plan.scene == scene_) {
+      cache_.add(results.points, frame_);
+      shadows_.add(results.triples);
+    }
+    if (plan.view == view_) {
+      for (const PixelPaths& p : results.pixels) film_.add(p.pixel, p.sum, p.paths);
+    }
+    stats_.rays.total += results.rays.total;
+    stats_.rays.rounded += results.rays.rounded;
+    stats_.rays.camera += results.items * std::uint64_t(shader_.paths);
+    stats_.new_points += results.items;
   }
+
+  void keep_report(const FrameReport& report, const EdgeTotals& totals);
+
+  // Pixels that want a point so much get one, also in a view that stands still.
+  static constexpr std::uint8_t kUrgent = 128;
 
   std::shared_ptr<const PreparedScene> scene_;
   EdgePointSettings settings_;
@@ -166,13 +221,77 @@ class EdgePointEngine::Impl {
   Camera camera_;
   EdgeObjects objects_;
   ShadowFinder shadows_;
-  std::vector<ShadowLight> lights_;
+  std::shared_ptr<const std::vector<ShadowLight>> lights_;
   PointCache cache_;
   FrameMaker maker_;
   Image picture_;
+  StillFilm film_;
+  std::vector<std::uint8_t> wanted_;
   EdgePointStats stats_;
   std::uint32_t frame_ = 0;
+  std::uint32_t still_frames_ = 0;
+  std::uint64_t view_ = 0;
+  std::uint64_t last_items_ = 0;
+  std::unique_ptr<ShadeWorkers> workers_;  // null: synchronous
 };
+
+void EdgePointEngine::Impl::keep_report(const FrameReport& report, const EdgeTotals& totals) {
+  EdgePointStats::Stages& stages = stats_.stages;
+  stages.points = report.times.points;
+  stages.raster = report.times.raster;
+  stages.reachability = report.times.reachability;
+  stages.interpolation = report.times.interpolation;
+  stages.antialias = report.times.antialias;
+  stages.complex = report.times.complex;
+  stats_.classes = {report.classes.empty, report.classes.simple, report.classes.complex};
+  stats_.edges = {totals.silhouette, totals.sharp, totals.shadow};
+  stats_.points = cache_.size();
+  stats_.hidden = report.hidden;
+  stats_.unresolved = report.unresolved;
+  stats_.still_paths = film_.least_paths();
+  stats_.cache_bytes = cache_.bytes();
+}
+
+void EdgePointEngine::Impl::set_scene(std::shared_ptr<const PreparedScene> scene) {
+  if (scene == scene_) return;
+  const Scene &before = scene_->scene(), &after = scene->scene();
+  std::vector<Sphere> moved;
+  for (std::uint32_t i = 0; i < after.objects.size(); ++i) {
+    const Affine3d &from = before.objects[i].world_from_object,
+                   &to = after.objects[i].world_from_object;
+    if (from == to) continue;
+    cache_.move(i, to * inverse(from), frame_);
+    shadows_.object_moved(i);
+    moved.push_back(objects_.bounding_sphere(*scene_, i));
+    moved.push_back(objects_.bounding_sphere(*scene, i));
+  }
+  make_shadowed_old(*lights_, moved, frame_, cache_);
+  const bool rounded_anew = objects_.update_roundings(*scene_, *scene);
+  auto lights = std::make_shared<const std::vector<ShadowLight>>(shadow_lights(*scene));
+  const bool lights_changed = find_changed_lights(before, after, shadows_);
+  if (rounded_anew || lights_changed) {
+    const auto all = [](auto...) { return true; };
+    cache_.make_old(frame_, all, all);
+  }
+  if (rounded_anew) shadows_.all_changed();
+  lights_ = std::move(lights);
+  scene_ = std::move(scene);
+  view_changed();
+}
+
+Image EdgePointEngine::Impl::classes_picture() const {
+  Image out(image_.width_px, image_.height_px, 3);
+  const EdgePointImage& image = maker_.image();
+  for (std::size_t i = 0; i < image.codes.size(); ++i) {
+    const PixelCode code = image.codes[i];
+    const bool has_point = !image.points[i].is_none();
+    const float bright = has_point ? 1.0F : 0.4F, dim = has_point ? 0.15F : 0.0F;
+    out.values[3 * i] = code.is_complex() ? bright : dim;
+    out.values[3 * i + 1] = dim;
+    out.values[3 * i + 2] = code.is_simple() ? bright : dim;
+  }
+  return out;
+}
 
 EdgePointEngine::EdgePointEngine(std::shared_ptr<const PreparedScene> scene,
                                  const EdgePointSettings& settings)
@@ -181,6 +300,9 @@ EdgePointEngine::~EdgePointEngine() = default;
 
 void EdgePointEngine::set_camera(const Camera& camera) {
   impl_->set_camera(camera);
+}
+void EdgePointEngine::set_scene(std::shared_ptr<const PreparedScene> scene) {
+  impl_->set_scene(std::move(scene));
 }
 const Image& EdgePointEngine::next_frame() {
   return impl_->next_frame();

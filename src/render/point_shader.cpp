@@ -29,6 +29,20 @@ PointShader make_point_shader(const EdgePointSettings& settings) {
   return shader;
 }
 
+Rgb shade_pixel(const PreparedScene& scene, const CameraRays& camera, const PixelFilter& filter,
+                const PointShader& shader, const PixelRequest& request, PathRays& rays) {
+  const PathSettings settings = path_settings(scene, shader.kind);
+  Rgb sum;
+  for (std::uint32_t i = request.first; i < request.first + request.count; ++i) {
+    Sampler sampler(shader.seed, std::uint32_t(request.x), std::uint32_t(request.y), i);
+    const Vec2f u = sampler.next_2d();
+    const double x = request.x + 0.5 + double(filter.sample_offset(u.x));
+    const double y = request.y + 0.5 + double(filter.sample_offset(u.y));
+    sum += trace_path(scene, settings, camera_ray(camera, x, y), sampler, rays).radiance;
+  }
+  return sum;
+}
+
 ShadedPoint shade_point(const PreparedScene& scene, const CameraRays& camera,
                         const PointShader& shader, const PointRequest& request, PathRays& rays) {
   const PathSettings settings = path_settings(scene, shader.kind);

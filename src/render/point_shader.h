@@ -12,6 +12,7 @@
 #include "edgepoint/point_cache.h"
 #include "render/camera.h"
 #include "render/path_integrator.h"
+#include "render/pixel_filter.h"
 #include "render/prepared_scene.h"
 
 namespace arris {
@@ -29,6 +30,14 @@ struct PointRequest {
   int x = 0, y = 0;         // pixel
   std::uint32_t frame = 0;  // which place of the pixel, and which paths
 };
+
+// The sum of paths of the path tracer's sample sequence through a pixel: `first` and those after it.
+struct PixelRequest {
+  int x = 0, y = 0;
+  std::uint32_t first = 0, count = 0;
+};
+Rgb shade_pixel(const PreparedScene& scene, const CameraRays& camera, const PixelFilter& filter,
+                const PointShader& shader, const PixelRequest& request, PathRays& rays);
 
 ShadedPoint shade_point(const PreparedScene& scene, const CameraRays& camera,
                         const PointShader& shader, const PointRequest& request, PathRays& rays);

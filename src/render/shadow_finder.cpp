@@ -74,6 +74,52 @@ std::vector<ShadowLight> shadow_lights(const PreparedScene& prepared) {
   return lights;
 }
 
+namespace {
+
+// Whether a light shines from elsewhere, and whether it differs at all.
+struct LightChange {
+  bool moved = false, any = false;
+};
+LightChange change_of(const PointLight& a, const PointLight& b) {
+  const bool moved = a.position != b.position;
+  return {moved, moved || a.intensity != b.intensity};
+}
+LightChange change_of(const SpotLight& a, const SpotLight& b) {
+  const bool moved = a.position != b.position;
+  return {moved, moved || a.intensity != b.intensity || a.direction != b.direction ||
+                     a.inner_angle != b.inner_angle || a.outer_angle != b.outer_angle};
+}
+LightChange change_of(const DirectionalLight& a, const DirectionalLight& b) {
+  const bool moved = a.direction != b.direction;
+  return {moved, moved || a.irradiance != b.irradiance};
+}
+LightChange change_of(const AreaLight& a, const AreaLight& b) {
+  const bool moved = a.corner != b.corner || a.edge_u != b.edge_u || a.edge_v != b.edge_v;
+  return {moved, moved || a.radiance != b.radiance || a.visible_to_camera != b.visible_to_camera};
+}
+template <class A, class B>
+LightChange change_of(const A& /*a*/, const B& /*b*/) {
+  return {true, true};
+}
+
+}  // namespace
+
+bool find_changed_lights(const Scene& before, const Scene& after, ShadowFinder& finder) {
+  if (before.lights.size() != after.lights.size()) {
+    finder.all_changed();
+    return true;
+  }
+  bool any = false;
+  for (std::uint32_t i = 0; i < after.lights.size(); ++i) {
+    const LightChange change =
+        std::visit([](const auto& a, const auto& b) { return change_of(a, b); }, before.lights[i],
+                   after.lights[i]);
+    if (change.moved) finder.light_moved(i);
+    any = any || change.any;
+  }
+  return any;
+}
+
 void ShadowFinder::add(std::span<const ShadowTriple> triples) {
   for (const ShadowTriple& t : triples) {
     Pair& pair = pairs_[{t.light, t.blocker}];

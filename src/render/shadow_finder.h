@@ -62,4 +62,7 @@ class ShadowFinder {
   std::vector<WorldEdge> edges_;
 };
 
+// Tells the finder which lights are others; true if any is, also of such as cast no shadow edges.
+bool find_changed_lights(const Scene& before, const Scene& after, ShadowFinder& finder);
+
 }  // namespace arris
