@@ -81,7 +81,12 @@ FaceTree::FaceTree(const EdgeMesh& mesh) : mesh_(&mesh), frame_(unit_frame(mesh)
   nodes_.reserve(tree.size() / 2);
   if (!tree.empty()) add_node(tree, 0, nodes_);
   faces_.resize(records.size());
-  for (std::size_t i = 0; i < records.size(); ++i) faces_[i] = records[i].item;
+  corners_.resize(records.size());
+  parallel_for(records.size(), {.grain = kGrain}, [&](std::size_t i) {
+    faces_[i] = records[i].item;
+    const Triangle& t = mesh.triangles[faces_[i]];
+    corners_[i] = {mesh.vertices[t[0]], mesh.vertices[t[1]], mesh.vertices[t[2]]};
+  });
 }
 
 }  // namespace arris

@@ -162,9 +162,22 @@ class Meeting {
       inside = inside || is_within_bounds(light_[k]);
     }
     one_sided_ = mesh_.closed && !inside;
+    // Far above the rounding of a side, far below what matters.
+    constexpr double kRounding = 1e-12;
+    const Vec3d d = forms_.object[0].direction;
+    const double size = std::max(size_of(mesh_.bounds_min), size_of(mesh_.bounds_max));
+    surely_ = kRounding * (size * (std::abs(d.x) + std::abs(d.y) + std::abs(d.z)) +
+                           std::abs(forms_.object[0].offset));
   }
 
   [[nodiscard]] const LocalForms& forms() const { return forms_; }
+  // Whether the plane passes a triangle by; most of those looked at.
+  [[nodiscard]] bool misses(const std::array<Vec3f, 3>& corners) const {
+    const LinearForm& plane = forms_.object[0];
+    const double a = plane.at(Vec3d(corners[0])), b = plane.at(Vec3d(corners[1]));
+    const double c = plane.at(Vec3d(corners[2]));
+    return std::min(std::min(a, b), c) > surely_ || std::max(std::max(a, b), c) < -surely_;
+  }
   [[nodiscard]] std::optional<EventPiece> piece(std::uint32_t face) const {
     if (receiver_.is_blocker && (face == event_.faces[0] || face == event_.faces[1])) {
       return std::nullopt;
@@ -252,6 +265,7 @@ class Meeting {
   const EdgeMesh& mesh_;
   std::array<HomogeneousPoint, 2> light_;
   bool one_sided_ = false;
+  double surely_ = 0;
 };
 
 // Farthest u that may still show, scaled as nearest_u() is.
@@ -318,6 +332,7 @@ void WedgeWalk::insert(const EventWedge& wedge, const ShadowEvent& event,
     stack_.pop_back();
     if (next.nearest_u > farthest) continue;
     for (std::uint32_t i = 0; i < next.faces; ++i) {
+      if (meeting.misses(receiver.faces->corners()[next.first + i])) continue;
       std::optional<EventPiece> piece = meeting.piece(receiver.faces->faces()[next.first + i]);
       if (!piece) continue;
       piece->item = next_item_++;
