@@ -4,12 +4,15 @@
 // In / Out   world coordinates. `receiver`: index into the receivers given. One list of (light, blocker, receivers) at
 //            a time: keep what comes out while none of them moves.
 // Guarantee  along each event, each point is on the receiver nearest to the beginning; same edges in the same order
-//            with any number of threads. On random scenes, visibility of the light changes across edges, and nowhere
-//            else (tests/edgepoint/shadow_edges_test.cpp).
+//            with any number of threads. For point and directional lights visibility changes across every edge and
+//            nowhere else, on random scenes; for area lights every place where the light begins to be hidden lies on a
+//            penumbral edge (tests/edgepoint/shadow_edges_test.cpp).
 // Limits     receivers that are not given neither show edges nor hide any: give all that may come first. Closed
-//            receivers are met from their front only, open ones and such as have the light within their bounds from
+//            receivers are met from their front only; open ones and such as have the light within their bounds from
 //            both sides. A contact within float's rounding of the beginning ends an event there; it is an edge, too.
-//            Pieces along a ray of the light have no extent along the event and are left out.
+//            Pieces along a ray of the light have no extent along the event and are left out, and so is the line
+//            where a solid enters a receiver. Where two blockers hide an area light together, neither's umbral edges
+//            end what they hide.
 // Cost       per event about that of one ray through each receiver's tree, parallel over events
 // Source     Bala, Walter, Greenberg 2003, sections 6.4, 6.5
 #pragma once

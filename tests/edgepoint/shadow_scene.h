@@ -121,7 +121,9 @@ inline double distance_to_edges(Vec3d p, std::span<const ShadowEdge> edges, std:
 
 // A floor and some boxes, balls and tori above it. Solids that reach into each other would show changes of visibility
 // where one's surface enters the other, which nobody sees: none do.
-inline ShadowScene random_shadow_scene(FinderRandom& random) {
+enum class Solids { apart, anywhere };
+
+inline ShadowScene random_shadow_scene(FinderRandom& random, Solids solids = Solids::apart) {
   ShadowScene scene;
   scene.add(make_box_mesh({12, 12, 1}), {{}, {0, 0, -0.5}});
   struct Ball {
@@ -138,7 +140,7 @@ inline ShadowScene random_shadow_scene(FinderRandom& random) {
     const bool overlaps = std::ranges::any_of(taken, [&](const Ball& b) {
       return length(b.center - ball.center) < b.radius + ball.radius;
     });
-    if (overlaps) continue;
+    if (overlaps && solids == Solids::apart) continue;
     if (taken.size() % 2 == 1) to_world.linear.x = -to_world.linear.x;  // mirrored
     taken.push_back(ball);
     scene.add(std::array{make_box_mesh({size, size * 0.7, size * 1.3}), make_icosahedron_mesh(size),
