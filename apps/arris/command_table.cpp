@@ -63,7 +63,9 @@ CommandRow render_row() {
           "the picture: .png .jpg (tone-mapped), .exr .pfm (linear); - writes PNG to stdout"},
          {"--aov", "LIST",
           "more layers, separated by commas: albedo, normal, depth, object, rounded, bevel_fac "
-          "(path); coverage_lo, coverage_hi, uncertified, regions (beam); part of an .exr, else "
+          "(path); coverage_lo, coverage_hi, uncertified, regions (beam); edges (edge-point); part "
+          "of "
+          "an .exr, else "
           "beside the picture as .NAME.pfm, and with .png and .jpg, where values go from 0 to 1, "
           "as "
           ".NAME.png to look at"},
@@ -83,18 +85,27 @@ CommandRow render_row() {
           "only these samples of the sequence (path); arris merge joins such .exr parts, which "
           "hold their "
           "exact sums besides, to the bytes of the whole"},
-         {"--integrator", "path|beam",
+         {"--integrator", "path|beam|edge-point",
           "path: path tracing; beam: what is small is found or its pixel marked, with certain "
-          "bounds on what "
-          "each "
-          "pixel shows (default: path)"},
+          "bounds on what each pixel shows; edge-point: from few shaded points, interpolated "
+          "between edges, for moving views (default: path)"},
          {"--beam-rule", "certified|corners",
           "how beams find uniform regions; certified: by bounds that hold; corners: by four rays, "
           "as in the paper of 1996, for comparison (default: certified)"},
          {"--light-beams", "N",
           "beam: each area light is N x N point lights, whose shadows have no noise; 0: it is "
           "sampled "
-          "(default: 0)"}}},
+          "(default: 0)"},
+         {"--shader", "direct|glossy|gi",
+          "edge-point: which light points are shaded with: direct, and that of glossy surfaces, "
+          "or all (default: gi)"},
+         {"--density", "PART",
+          "edge-point: of the pixels that are shaded anew for each frame (default: 0.02; 1 for a "
+          "single picture)"},
+         {"--point-paths", "N",
+          "edge-point: paths for each point (default: 4 direct, 8 glossy, 16 gi)"},
+         {"--edges", "on|off",
+          "edge-point: off interpolates across all edges, for comparison (default: on)"}}},
        input_group(),
        camera_group(),
        {"Staging",

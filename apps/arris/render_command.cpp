@@ -13,6 +13,7 @@
 #include "arris/command_line.h"
 #include "arris/commands.h"
 #include "arris/console.h"
+#include "arris/edge_point_job.h"
 #include "arris/error.h"
 #include "arris/frame_files.h"
 #include "arris/input.h"
@@ -119,6 +120,10 @@ void report_scene(Console& console, const Scene& scene, const PrepareStats& stat
 
 // What was done for each pixel; of beams, for all of them.
 std::string format_work(const JobResult& result) {
+  if (result.edge_point && result.part.samples[0].last == 1) {
+    return fmt::format("{} new points of {}", result.edge_point->new_points,
+                       result.edge_point->points);
+  }
   if (!result.beam) return "samples " + format_samples(result.part.samples);
   const BeamCounts& beam = *result.beam;
   return fmt::format("{} regions, {} uncertified {}", beam.regions, beam.uncertified_pixels,
@@ -184,14 +189,15 @@ class PictureMaker {
       : request_(request),
         console_(console),
         stop_(stop),
-        renderer_(make_renderer(request.integrator, request.beam)) {}
+        renderer_(make_renderer(request.integrator, request.beam)),
+        edge_point_(request.edge_point) {}
 
   RenderStats stats;
   std::uint64_t ground_triangles = 0;  // of the scene: not the user's
 
   void render_single(Scene scene) {
     const auto prepared = prepare(std::move(scene), Placement::baked);
-    const JobResult result = render(*prepared);
+    const JobResult result = render(prepared);
     save(*prepared, request_.output, result);
     write_stats_if_asked();
     report_result(console_, request_.output, result, scene_of(*prepared));
@@ -209,7 +215,7 @@ class PictureMaker {
     for (int frame = frames.first; frame < frames.last; ++frame) {
       end_if_stopped(frames, frame);
       prepared = prepare_frame(*prepared, scene_at(scene, frame));
-      const std::optional<JobResult> result = try_render(*prepared);
+      const std::optional<JobResult> result = try_render(prepared);
       if (!result) end_if_stopped(frames, frame);
       const std::string output = frame_file(request_.output, frame);
       save(*prepared, output, *result);
@@ -239,25 +245,32 @@ class PictureMaker {
     return prepared;
   }
 
-  JobResult render(const PreparedScene& prepared) {
-    RenderJob job = make_job(request_, scene_of(prepared));
+  JobResult render(const std::shared_ptr<const PreparedScene>& prepared) {
+    RenderJob job = make_job(request_, scene_of(*prepared));
     wanted_ = job.options.samples;
     job.options.stop = &stop_;
     job.options.on_progress = [&](const Progress& progress) {
       console_.show_progress({(double(done_) + progress.done) / count_, begin_.seconds()});
     };
-    JobResult result = run_job(*renderer_, prepared, job);
+    JobResult result = run(prepared, job);
     console_.end_progress();
     stats.rays.camera += result.rays.camera;
     stats.rays.total += result.rays.total;
     stats.rays.rounded += result.rays.rounded;
     if (result.beam) add_beam(stats.beam, *result.beam, done_ + 1);
     stats.render_seconds += result.seconds;
+    stats.pixels = double(scene_of(*prepared).image.width_px) * scene_of(*prepared).image.height_px;
     return result;
   }
 
+  JobResult run(const std::shared_ptr<const PreparedScene>& prepared, const RenderJob& job) {
+    if (request_.integrator != Integrator::edge_point) return run_job(*renderer_, *prepared, job);
+    return request_.frames ? edge_point_.render_frame(prepared, job)
+                           : edge_point_.render_still(prepared, job);
+  }
+
   // Nothing if it was stopped: frames of fewer samples than their neighbours are of no use.
-  std::optional<JobResult> try_render(const PreparedScene& prepared) {
+  std::optional<JobResult> try_render(const std::shared_ptr<const PreparedScene>& prepared) {
     try {
       JobResult result = render(prepared);
       if (stop_ && !result.complete) return std::nullopt;
@@ -276,6 +289,7 @@ class PictureMaker {
 
   void write_stats_if_asked() {
     if (request_.frames) stats.frames = done_;
+    stats.edge_point = edge_point_.frames();
     if (request_.stats) write_stats(*request_.stats, stats);
   }
 
@@ -293,6 +307,7 @@ class PictureMaker {
   Console& console_;
   const std::atomic<bool>& stop_;
   std::unique_ptr<Renderer> renderer_;
+  EdgePointJob edge_point_;
   const Stopwatch begin_;
   SampleRange wanted_;
   double count_ = 1;  // of pictures

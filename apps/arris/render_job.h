@@ -9,6 +9,7 @@
 #include <functional>
 #include <optional>
 
+#include "arris/edge_point.h"
 #include "arris/render.h"
 #include "image/picture_sum.h"
 #include "io/render_part.h"
@@ -30,6 +31,7 @@ struct JobResult {
   RenderPart part;
   RayCounts rays;  // of this run
   std::optional<BeamCounts> beam;
+  std::optional<EdgePointStats> edge_point;
   double seconds = 0;         // of this run
   std::uint64_t resumed = 0;  // samples from the checkpoint
   bool complete = false;      // all samples that were asked for

@@ -76,15 +76,56 @@ std::optional<SampleRange> make_samples(const Arguments& arguments) {
   return std::nullopt;
 }
 
+constexpr Integrator kIntegrators[] = {Integrator::path, Integrator::beam, Integrator::edge_point};
+// What the paper's scenes have, of pixels shaded a frame.
+constexpr double kFrameDensity = 0.02;
+constexpr std::uint64_t kMostPointPaths = 65536;
+
 Integrator parse_integrator(const Arguments& arguments) {
   const auto given = find_given(arguments, "--integrator");
   if (!given) return Integrator::path;
-  if (given->text == "edge-point") {
-    throw Error(Error::Kind::input, "",
-                "integrator edge-point is not in this build; use path or beam");
+  return kIntegrators[parse_choice(*given, {"path", "beam", "edge-point"})];
+}
+
+EdgePointSettings parse_edge_point_settings(const Arguments& arguments, Integrator integrator) {
+  for (const char* option : {"--shader", "--density", "--edges", "--point-paths"}) {
+    if (!arguments.has(option) || integrator == Integrator::edge_point) continue;
+    throw Error(Error::Kind::input, option, "needs --integrator edge-point");
   }
-  constexpr Integrator kIntegrators[] = {Integrator::path, Integrator::beam};
-  return kIntegrators[parse_choice(*given, {"path", "beam"})];
+  EdgePointSettings settings;
+  if (const auto given = find_given(arguments, "--shader")) {
+    constexpr EdgePointShader kShaders[] = {EdgePointShader::direct, EdgePointShader::glossy,
+                                            EdgePointShader::gi};
+    settings.shader = kShaders[parse_choice(*given, {"direct", "glossy", "gi"})];
+  }
+  // A view that stands still is worked on all over.
+  settings.density = arguments.has("--frames") ? kFrameDensity : 1;
+  if (const auto given = find_given(arguments, "--density")) {
+    settings.density = parse_real(*given, {1e-4, 1});
+  }
+  if (const auto given = find_given(arguments, "--edges")) {
+    settings.use_edges = parse_choice(*given, {"off", "on"}) == 1;
+  }
+  if (const auto given = find_given(arguments, "--point-paths")) {
+    settings.paths_per_point = int(parse_count(*given, 1, kMostPointPaths));
+  }
+  return settings;
+}
+
+// Its pictures are no sums of samples.
+void check_edge_point_options(const Arguments& arguments) {
+  for (const char* option : {"--checkpoint", "--samples"}) {
+    if (!arguments.has(option)) continue;
+    throw Error(Error::Kind::input, option,
+                "can't be used with --integrator edge-point, whose pictures are not sums of "
+                "samples; leave it out or use --integrator path");
+  }
+  for (const char* option : {"--time", "--spp"}) {
+    if (!arguments.has(option) || !arguments.has("--frames")) continue;
+    throw Error(Error::Kind::input, option,
+                "can't be used with the frames of --integrator edge-point; --density says how "
+                "much is shaded for each");
+  }
 }
 
 BeamSettings parse_beam_settings(const Arguments& arguments, Integrator integrator) {
@@ -113,14 +154,19 @@ void check_beam_options(const Arguments& arguments) {
   }
 }
 
+std::vector<std::string> aovs_of(Integrator integrator) {
+  if (integrator == Integrator::edge_point) return {"edges"};
+  return make_renderer(integrator)->aovs();
+}
+
 std::vector<std::string> parse_aovs(const Arguments& arguments, Integrator integrator) {
   const auto given = find_given(arguments, "--aov");
   if (!given) return {};
-  const std::vector<std::string> known = make_renderer(integrator)->aovs();
+  const std::vector<std::string> known = aovs_of(integrator);
   std::vector<std::string> aovs;
   for (const std::string& name : parse_list(*given)) {
-    for (const Integrator other : {Integrator::path, Integrator::beam}) {
-      const std::vector<std::string> names = make_renderer(other)->aovs();
+    for (const Integrator other : kIntegrators) {
+      const std::vector<std::string> names = aovs_of(other);
       const bool is_known = std::ranges::find(known, name) != known.end();
       if (is_known || std::ranges::find(names, name) == names.end()) continue;
       throw Error(Error::Kind::input, "--aov",
@@ -153,8 +199,9 @@ std::string parse_output(const Arguments& arguments) {
 
 // Values of these go from 0 to 1; and few programs show what is not 8-bit.
 std::vector<std::string> find_shown_layers(const RenderRequest& request) {
-  constexpr std::string_view kWithin01[] = {
-      "albedo", "rounded", "bevel_fac", "coverage_lo", "coverage_hi", "uncertified", "regions"};
+  constexpr std::string_view kWithin01[] = {"albedo",      "rounded",     "bevel_fac",
+                                            "coverage_lo", "coverage_hi", "uncertified",
+                                            "regions",     "edges"};
   if (request.output == "-") return {};
   const PictureFormat format = picture_format(request.output);
   if (format != PictureFormat::png && format != PictureFormat::jpeg) return {};
@@ -216,7 +263,15 @@ std::unique_ptr<Renderer> make_renderer(Integrator integrator, const BeamSetting
   return integrator == Integrator::beam ? make_beam_renderer(beam) : make_path_renderer();
 }
 const char* name_of(Integrator integrator) {
-  return integrator == Integrator::beam ? "beam" : "path";
+  switch (integrator) {
+    case Integrator::beam:
+      return "beam";
+    case Integrator::edge_point:
+      return "edge-point";
+    case Integrator::path:
+      break;
+  }
+  return "path";
 }
 
 RenderRequest make_render_request(const Arguments& arguments) {
@@ -227,7 +282,9 @@ RenderRequest make_render_request(const Arguments& arguments) {
   request.frames = make_frames(arguments, request.output);
   request.integrator = parse_integrator(arguments);
   request.beam = parse_beam_settings(arguments, request.integrator);
+  request.edge_point = parse_edge_point_settings(arguments, request.integrator);
   if (request.integrator == Integrator::beam) check_beam_options(arguments);
+  if (request.integrator == Integrator::edge_point) check_edge_point_options(arguments);
   request.aovs = parse_aovs(arguments, request.integrator);
   request.shown_layers = find_shown_layers(request);
   request.stage = make_stage_options(arguments);

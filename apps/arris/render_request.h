@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "arris/command_line.h"
+#include "arris/edge_point.h"
 #include "arris/io.h"
 #include "arris/render.h"
 #include "arris/scene.h"
@@ -16,7 +17,7 @@
 
 namespace arris::program {
 
-enum class Integrator { path, beam };
+enum class Integrator { path, beam, edge_point };
 
 struct RenderRequest {
   std::string input;  // "-": stdin
@@ -27,6 +28,7 @@ struct RenderRequest {
   std::optional<std::filesystem::path> checkpoint;
   Integrator integrator = Integrator::path;
   BeamSettings beam;
+  EdgePointSettings edge_point;
   StageOptions stage;
   std::optional<SampleRange> samples;  // empty: from 0 to the scene's
   bool is_part = false;                // to be joined with others
@@ -37,6 +39,7 @@ struct RenderRequest {
   std::vector<std::string> shown_layers;  // of them, those that are also PNGs beside the picture
 };
 
+// Not of edge_point, which is no Renderer: edge_point_job.h.
 std::unique_ptr<Renderer> make_renderer(Integrator integrator, const BeamSettings& beam = {});
 const char* name_of(Integrator integrator);
 

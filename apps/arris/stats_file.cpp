@@ -2,7 +2,10 @@
 
 #include <sys/resource.h>
 
+#include <algorithm>
+#include <cstddef>
 #include <nlohmann/json.hpp>
+#include <vector>
 
 namespace arris::program {
 
@@ -11,6 +14,53 @@ std::uint64_t peak_memory_bytes() {
   ::getrusage(RUSAGE_SELF, &usage);
   return std::uint64_t(usage.ru_maxrss) * 1024;
 }
+
+namespace {
+
+template <class Value>
+double median(const std::vector<EdgePointStats>& frames, const Value& value) {
+  std::vector<double> values;
+  for (const EdgePointStats& frame : frames) values.push_back(double(value(frame)));
+  std::nth_element(values.begin(), values.begin() + std::ptrdiff_t(values.size() / 2),
+                   values.end());
+  return values[values.size() / 2];
+}
+
+nlohmann::ordered_json edge_point_json(const std::vector<EdgePointStats>& frames, double pixels) {
+  using Stages = EdgePointStats::Stages;
+  const auto stage = [&](double Stages::*member) {
+    return median(frames, [&](const EdgePointStats& s) { return s.stages.*member; });
+  };
+  const auto part = [&](std::uint64_t EdgePointStats::Classes::*member) {
+    return median(frames, [&](const EdgePointStats& s) { return s.classes.*member; }) / pixels;
+  };
+  const auto edges = [&](std::uint64_t EdgePointStats::Edges::*member) {
+    return std::uint64_t(median(frames, [&](const EdgePointStats& s) { return s.edges.*member; }));
+  };
+  const double total = stage(&Stages::total);
+  nlohmann::ordered_json json;
+  json["frames"] = frames.size();
+  json["fps"] = total > 0 ? 1000 / total : 0;
+  json["stages_ms"] = {{"edges", stage(&Stages::edges)},
+                       {"raster", stage(&Stages::raster)},
+                       {"points", stage(&Stages::points)},
+                       {"reachability", stage(&Stages::reachability)},
+                       {"interpolation", stage(&Stages::interpolation)},
+                       {"antialias", stage(&Stages::antialias)},
+                       {"complex", stage(&Stages::complex)},
+                       {"total", total}};
+  json["classes"] = {{"empty", part(&EdgePointStats::Classes::empty)},
+                     {"simple", part(&EdgePointStats::Classes::simple)},
+                     {"complex", part(&EdgePointStats::Classes::complex)}};
+  json["edges"] = {{"silhouette", edges(&EdgePointStats::Edges::silhouette)},
+                   {"sharp", edges(&EdgePointStats::Edges::sharp)},
+                   {"shadow", edges(&EdgePointStats::Edges::shadow)}};
+  json["new_samples_fraction"] =
+      median(frames, [](const EdgePointStats& s) { return s.new_points; }) / pixels;
+  return json;
+}
+
+}  // namespace
 
 std::string stats_json(const RenderStats& stats) {
   const PrepareStats& prepare = stats.prepare;
@@ -36,6 +86,9 @@ std::string stats_json(const RenderStats& stats) {
                     {"rays", stats.beam->rays},
                     {"certified_fraction", stats.beam->certified_fraction},
                     {"uncertified_pixels", stats.beam->uncertified_pixels}};
+  }
+  if (!stats.edge_point.empty()) {
+    json["edge_point"] = edge_point_json(stats.edge_point, stats.pixels);
   }
   return json.dump(2) + "\n";
 }

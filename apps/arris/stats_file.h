@@ -4,7 +4,9 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <vector>
 
+#include "arris/edge_point.h"
 #include "arris/render.h"
 
 namespace arris::program {
@@ -16,6 +18,8 @@ struct RenderStats {
   PrepareStats prepare;
   RayCounts rays;
   std::optional<BeamCounts> beam;
+  std::vector<EdgePointStats> edge_point;  // of each frame; empty: another integrator
+  double pixels = 0;                       // of a frame
 };
 
 std::string stats_json(const RenderStats& stats);
