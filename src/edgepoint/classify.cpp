@@ -54,18 +54,17 @@ PixelClasses classify_pixels(RowBand band, EdgePointImage& image) {
       if (!any) {
         corners.primary.fill(count == kWord ? ~std::uint64_t{0}
                                             : (std::uint64_t{1} << unsigned(count)) - 1);
-        for (int x = x0; x < x0 + count; ++x) {
-          codes[x] = PixelCode(kEmptyEdge);
-          if (points[x].is_none()) continue;
-          codes[x].set_sample();
-          samples |= std::uint64_t{1} << unsigned(x - x0);
+        std::fill(codes + x0, codes + x0 + count, PixelCode(kEmptyEdge));
+        for (int i = 0; i < count; ++i) {
+          samples |= std::uint64_t(points[x0 + i].is_none() ? 0 : 1) << unsigned(i);
         }
         classes.empty += std::uint64_t(count);
       } else {
         for (int x = x0; x < x0 + count; ++x) {
-          codes[x] = make_pixel_code(boundary_mask(c.of_pixel(x, y)), points[x]);
-          corners.add(codes[x], x - x0);
-          samples |= std::uint64_t(codes[x].has_sample() ? 1 : 0) << unsigned(x - x0);
+          const ClassifiedPixel pixel = classify_pixel(boundary_mask(c.of_pixel(x, y)), points[x]);
+          codes[x] = pixel.code;
+          corners.add(pixel.code, x - x0);
+          samples |= std::uint64_t(pixel.has_sample ? 1 : 0) << unsigned(x - x0);
           classes.empty += codes[x].is_empty() ? 1 : 0;
           classes.simple += codes[x].is_simple() ? 1 : 0;
           classes.complex += codes[x].is_complex() ? 1 : 0;

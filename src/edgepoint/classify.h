@@ -23,23 +23,25 @@ struct PixelClasses {
 // Makes the codes and corners of a band's rows of its crossings and points, and counts. Bands share nothing.
 PixelClasses classify_pixels(RowBand band, EdgePointImage& image);
 
-// The code of one pixel, of what its boundary is crossed by and its point (or none).
-inline PixelCode make_pixel_code(std::uint32_t boundary, PointKey point) {
+// The code of one pixel, of what its boundary is crossed by and its point (or none); and whether the point is a sample
+// that others may use: it is known to lie in the primary region.
+struct ClassifiedPixel {
+  PixelCode code;
+  bool has_sample = false;
+};
+inline ClassifiedPixel classify_pixel(std::uint32_t boundary, PointKey point) {
   const EdgeTables& tables = edge_tables();
-  PixelCode code(classify_boundary(boundary));
-  if (code.is_simple()) {
+  ClassifiedPixel pixel{PixelCode(classify_boundary(boundary)), false};
+  if (pixel.code.is_simple()) {
+    const std::uint32_t edge = pixel.code.edge();
     const RegionOf region =
-        point.is_none() ? RegionOf::ambiguous : tables.region_of(code.edge(), point.cell());
-    if (region == RegionOf::ambiguous) {
-      code.set_primary(tables.area_a[code.edge()] > 0.5F);
-    } else {
-      code.set_primary(region == RegionOf::a);
-      code.set_sample();
-    }
-  } else if (!point.is_none() && code.is_empty()) {
-    code.set_sample();
+        point.is_none() ? RegionOf::ambiguous : tables.region_of(edge, point.cell());
+    pixel.has_sample = region != RegionOf::ambiguous;
+    pixel.code.set_primary(pixel.has_sample ? region == RegionOf::a : tables.area_a[edge] > 0.5F);
+  } else {
+    pixel.has_sample = !point.is_none() && pixel.code.is_empty();
   }
-  return code;
+  return pixel;
 }
 
 }  // namespace arris

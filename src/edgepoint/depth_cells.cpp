@@ -65,6 +65,12 @@ void DepthCells::fill_limits(int limit_row, float pixel_size) {
   }
 }
 
+void DepthCells::copy_nearest(int y, std::span<float> out) const {
+  const Around* const row =
+      around_.data() + std::size_t((y + kSide / 2) / kSide) * std::size_t(columns_ + 1);
+  for (int x = 0; x < width_; ++x) out[std::size_t(x)] = row[(x + kSide / 2) / kSide].nearest;
+}
+
 float PointKey::depth() const {
   return std::bit_cast<float>(std::uint32_t(bits_ >> 32U));
 }

@@ -28,8 +28,9 @@ class DepthCells {
 
   // The largest depth at which an edge is seen at a place of the picture.
   [[nodiscard]] float limit_at(float x, float y) const { return around_[place_of(x, y)].limit; }
-  // The smallest depth of the points around.
-  [[nodiscard]] float nearest_at(float x, float y) const { return around_[place_of(x, y)].nearest; }
+  // The smallest depth of the points around each pixel of a row; it is the same for a row unless that changes there.
+  void copy_nearest(int y, std::span<float> out) const;
+  [[nodiscard]] static bool row_changes_at(int y) { return (y + kSide / 2) % kSide == 0; }
 
  private:
   static constexpr int kSide = 4;  // pixels

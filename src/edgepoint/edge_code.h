@@ -72,17 +72,13 @@ class PixelCode {
   [[nodiscard]] bool is_simple() const { return arris::is_simple(edge()); }
   // Region A is the primary one (else B, or all of a pixel that isn't simple).
   [[nodiscard]] bool primary_is_a() const { return (bits_ & kPrimaryA) != 0; }
-  // There is a sample, and it is known to lie in the primary region.
-  [[nodiscard]] bool has_sample() const { return (bits_ & kSample) != 0; }
 
   void set_primary(bool is_a) {
     bits_ = std::uint16_t((bits_ & ~kPrimaryA) | (is_a ? kPrimaryA : 0));
   }
-  void set_sample() { bits_ = std::uint16_t(bits_ | kSample); }
-  void clear_sample() { bits_ = std::uint16_t(bits_ & ~kSample); }
 
  private:
-  static constexpr std::uint32_t kPrimaryA = 1U << 14U, kSample = 1U << 15U;
+  static constexpr std::uint32_t kPrimaryA = 1U << 14U;
   std::uint16_t bits_ = 0;
 };
 

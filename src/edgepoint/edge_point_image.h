@@ -81,7 +81,7 @@ struct EdgePointImage {
   std::vector<PixelCode> codes;
   std::vector<PointKey> points;
   CornerPlanes corners;
-  BitPlane samples;  // whose sample may be used by others (PixelCode::has_sample())
+  BitPlane samples;  // whose point is known to lie in the primary region, so that others may use it
   ReachPlanes reach;
 
   EdgePointImage() = default;

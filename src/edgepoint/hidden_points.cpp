@@ -1,10 +1,97 @@
 #include "edgepoint/hidden_points.h"
 
+#include <algorithm>
+#include <array>
+#include <bit>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
+#include <cstring>
 
+#include "edgepoint/shifted_word.h"
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "edgepoint/hidden_points.cpp"
+#include <hwy/foreach_target.h>  // compiles this file once for each kind of processor
+
+#include <hwy/highway.h>
+
+#ifndef ARRIS_EDGEPOINT_HIDDEN_POINTS_ONCE
+#define ARRIS_EDGEPOINT_HIDDEN_POINTS_ONCE
+namespace arris {
+
+// A neighbour within reach: which of 64 pixels it has a sample for, and the inverse depths there.
+struct DepthTap {
+  std::uint64_t pixels = 0;
+  const float* inverse = nullptr;
+};
+struct DepthTaps {
+  std::array<DepthTap, 24> taps;
+  std::size_t count = 0;
+};
+
+}  // namespace arris
+#endif
+
+HWY_BEFORE_NAMESPACE();
+namespace arris::HWY_NAMESPACE {
+namespace {
+
+namespace hn = hwy::HWY_NAMESPACE;
+
+template <class Tag>
+std::uint64_t mask_bits(Tag tag, hn::Mask<Tag> mask) {
+  std::array<std::uint8_t, 8> bytes{};
+  hn::StoreMaskBits(tag, mask, bytes.data());
+  std::uint64_t bits = 0;
+  std::memcpy(&bits, bytes.data(), sizeof bits);
+  return bits & ((std::uint64_t{1} << hn::Lanes(tag)) - 1);
+}
+
+// Of 64 pixels those whose inverse depth is below `part` of the mean of their neighbours'.
+std::uint64_t find_deeper(const DepthTaps& taps, const float* inverse, float part) {
+  const hn::CappedTag<float, 16> f;
+  const auto one = hn::Set(f, 1.0F), zero = hn::Zero(f);
+  const std::size_t lanes = hn::Lanes(f);
+  std::uint64_t found = 0;
+  for (std::size_t i = 0; i < 64; i += lanes) {
+    auto sum = zero, count = zero;
+    for (std::size_t k = 0; k < taps.count; ++k) {
+      const std::uint64_t bits = taps.taps[k].pixels >> i;
+      std::array<std::uint8_t, 8> bytes;
+      std::memcpy(bytes.data(), &bits, sizeof bits);
+      const auto mask = hn::LoadMaskBits(f, bytes.data());
+      sum = hn::Add(sum, hn::IfThenElseZero(mask, hn::LoadU(f, taps.taps[k].inverse + i)));
+      count = hn::Add(count, hn::IfThenElseZero(mask, one));
+    }
+    const auto own = hn::LoadU(f, inverse + i);
+    const auto deeper = hn::Lt(hn::Mul(own, count), hn::Mul(sum, hn::Set(f, part)));
+    found |= mask_bits(f, deeper) << i;
+  }
+  return found;
+}
+
+// Of 64 places those where a · b is below `limit`.
+std::uint64_t find_products_below(const float* a, const float* b, float limit) {
+  const hn::CappedTag<float, 16> f;
+  std::uint64_t found = 0;
+  for (std::size_t i = 0; i < 64; i += hn::Lanes(f)) {
+    const auto product = hn::Mul(hn::LoadU(f, a + i), hn::LoadU(f, b + i));
+    found |= mask_bits(f, hn::Lt(product, hn::Set(f, limit))) << i;
+  }
+  return found;
+}
+
+}  // namespace
+}  // namespace arris::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
 namespace arris {
 namespace {
+
+HWY_EXPORT(find_deeper);
+HWY_EXPORT(find_products_below);
 
 // Depths within what a steep surface gains over some pixels say nothing.
 constexpr float kPixelsDeep = 8;
@@ -72,23 +159,91 @@ bool is_hidden(const EdgePointImage& image, int x, int y, float depth, float pix
   return depth > surface + tolerance;
 }
 
+// Rows of a band, with those around it.
+class HiddenFinder {
+ public:
+  HiddenFinder(const EdgePointImage& image, const DepthCells& cells, RowBand band, float pixel_size)
+      : image_(image),
+        cells_(cells),
+        band_(band),
+        pixel_size_(pixel_size),
+        stride_(std::size_t(image.samples.words()) * 64 + 2 * kMargin),
+        rows_(stride_ * kRows),
+        nearest_(std::size_t(image.samples.words()) * 64) {}
+
+  std::vector<std::uint32_t> find() {
+    for (int y = band_.first - 2; y < band_.first + 2; ++y) fetch(y);
+    for (int y = band_.first; y < band_.last; ++y) {
+      fetch(y + 2);
+      if (y == band_.first || cells_.row_changes_at(y)) cells_.copy_nearest(y, nearest_);
+      for (int word = 0; word < image_.samples.words(); ++word) find_in(y, word);
+    }
+    return std::move(hidden_);
+  }
+
+ private:
+  static constexpr int kRows = 8, kMargin = 16;
+
+  [[nodiscard]] float* row(int y) {
+    return rows_.data() + stride_ * std::size_t((y + kRows) % kRows) + kMargin;
+  }
+
+  void fetch(int y) {
+    if (y < 0 || y >= image_.height_px) return;
+    const PointKey* const points = image_.points.data() + image_.offset(0, y);
+    float* const inverse = row(y);
+    // Of no point it is not a number, which is smaller than nothing.
+    for (int x = 0; x < image_.width_px; ++x) inverse[x] = 1 / points[x].depth();
+  }
+
+  void find_in(int y, int word) {
+    const float part = 1 / (1 + kPixelsDeep * pixel_size_);
+    const std::ptrdiff_t x0 = 64 * std::ptrdiff_t(word);
+    const float* const inverse = row(y) + x0;
+    std::uint64_t deep = image_.samples.row(y)[word] & HWY_DYNAMIC_DISPATCH(find_products_below)(
+                                                           inverse, nearest_.data() + x0, part);
+    if (deep == 0) return;
+    deep &= HWY_DYNAMIC_DISPATCH(find_deeper)(taps_of(y, word), inverse, part);
+    for (; deep != 0; deep &= deep - 1) {
+      const int x = 64 * word + std::countr_zero(deep);
+      const std::size_t at = image_.offset(x, y);
+      if (is_hidden(image_, x, y, image_.points[at].depth(), pixel_size_)) {
+        hidden_.push_back(std::uint32_t(at));
+      }
+    }
+  }
+
+  DepthTaps taps_of(int y, int word) {
+    DepthTaps taps;
+    const auto add = [&](int dx, int dy, std::uint64_t reached) {
+      const std::uint64_t pixels = reached & shifted_word(image_.samples.row(y + dy), word, dx);
+      if (pixels != 0)
+        taps.taps[taps.count++] = {pixels, row(y + dy) + 64 * std::ptrdiff_t(word) + dx};
+    };
+    for (std::size_t k = 0; k < kReachOffsets; ++k) {
+      const auto [dx, dy] = kReachOffset[k];
+      const BitPlane& reach = image_.reach.planes[k];
+      add(dx, dy, reach.row(y)[word]);
+      add(-dx, -dy, shifted_word(reach.row(y - dy), word, -dx));
+    }
+    return taps;
+  }
+
+  const EdgePointImage& image_;
+  const DepthCells& cells_;
+  RowBand band_;
+  float pixel_size_;
+  std::size_t stride_;
+  std::vector<float> rows_;
+  std::vector<float> nearest_;  // around each pixel of the row
+  std::vector<std::uint32_t> hidden_;
+};
+
 }  // namespace
 
 std::vector<std::uint32_t> find_hidden_points(const EdgePointImage& image, const DepthCells& cells,
                                               RowBand band, float pixel_size) {
-  std::vector<std::uint32_t> hidden;
-  for (int y = band.first; y < band.last; ++y) {
-    for (int x = 0; x < image.width_px; ++x) {
-      const std::size_t at = image.offset(x, y);
-      const PointKey point = image.points[at];
-      if (point.is_none() || !image.samples.at(x, y)) continue;
-      const float depth = point.depth();
-      const float nearest = cells.nearest_at(float(x) + 0.5F, float(y) + 0.5F);
-      if (depth <= nearest * (1 + kPixelsDeep * pixel_size)) continue;
-      if (is_hidden(image, x, y, depth, pixel_size)) hidden.push_back(std::uint32_t(at));
-    }
-  }
-  return hidden;
+  return HiddenFinder(image, cells, band, pixel_size).find();
 }
 
 void remove_points(std::span<const std::uint32_t> pixels, EdgePointImage& image) {
@@ -97,8 +252,8 @@ void remove_points(std::span<const std::uint32_t> pixels, EdgePointImage& image)
     const int x = int(at % std::uint32_t(image.width_px)),
               y = int(at / std::uint32_t(image.width_px));
     image.samples.row(y)[x >> 6] &= ~(std::uint64_t{1} << unsigned(x & 63));
-    image.codes[at].clear_sample();
   }
 }
 
 }  // namespace arris
+#endif

@@ -7,6 +7,7 @@
 #include <cstring>
 
 #include "edgepoint/kernel.h"
+#include "edgepoint/shifted_word.h"
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "edgepoint/interpolate.cpp"
@@ -65,6 +66,21 @@ void sum_taps(const std::array<Tap, kTaps>& taps, std::size_t tap_count, int x0,
   }
 }
 
+void interleave(ColorRow row, int width, float* out) {
+  const hn::CappedTag<float, 16> f;
+  const int lanes = int(hn::Lanes(f));
+  int x = 0;
+  for (; x + lanes <= width; x += lanes) {
+    hn::StoreInterleaved3(hn::LoadU(f, row.r + x), hn::LoadU(f, row.g + x), hn::LoadU(f, row.b + x),
+                          f, out + 3 * std::ptrdiff_t(x));
+  }
+  for (; x < width; ++x) {
+    out[3 * x] = row.r[x];
+    out[3 * x + 1] = row.g[x];
+    out[3 * x + 2] = row.b[x];
+  }
+}
+
 }  // namespace
 }  // namespace arris::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
@@ -74,13 +90,7 @@ namespace arris {
 namespace {
 
 HWY_EXPORT(sum_taps);
-
-// The word of a row from `word` on as it is for the pixels dx to the right.
-std::uint64_t shifted(const std::uint64_t* row, int word, int dx) {
-  if (dx == 0) return row[word];
-  return dx > 0 ? row[word] >> unsigned(dx) | row[word + 1] << unsigned(64 - dx)
-                : row[word] << unsigned(-dx) | row[word - 1] >> unsigned(64 + dx);
-}
+HWY_EXPORT(interleave);
 
 class TapList {
  public:
@@ -94,7 +104,7 @@ class TapList {
   }
   // Of a neighbour the pixels for which it has a sample.
   [[nodiscard]] std::uint64_t sampled(int dx, int dy) const {
-    return shifted(image_.samples.row(y_ + dy), word_, dx);
+    return shifted_word(image_.samples.row(y_ + dy), word_, dx);
   }
   // Of the pixels those that reach the neighbour at an offset of kReachOffset, and at its opposite.
   [[nodiscard]] std::uint64_t reached(std::size_t k) const {
@@ -102,7 +112,7 @@ class TapList {
   }
   [[nodiscard]] std::uint64_t reached_back(std::size_t k) const {
     const auto [dx, dy] = kReachOffset[k];
-    return shifted(image_.reach.planes[k].row(y_ - dy), word_, -dx);
+    return shifted_word(image_.reach.planes[k].row(y_ - dy), word_, -dx);
   }
   void sum(int x0, int count, ColorRow out, float* weight) const {
     HWY_DYNAMIC_DISPATCH(sum_taps)(taps_, count_, x0, count, out, weight);
@@ -117,6 +127,10 @@ class TapList {
 };
 
 }  // namespace
+
+void interleave_row(ColorRow row, int width, float* out) {
+  HWY_DYNAMIC_DISPATCH(interleave)(row, width, out);
+}
 
 void interpolate_row(const EdgePointImage& image, int y, ColorRows& samples, ColorRow out,
                      float* weight) {

@@ -15,4 +15,7 @@ namespace arris {
 void interpolate_row(const EdgePointImage& image, int y, ColorRows& samples, ColorRow out,
                      float* weight);
 
+// A row of planes as one of pixels.
+void interleave_row(ColorRow row, int width, float* out);
+
 }  // namespace arris

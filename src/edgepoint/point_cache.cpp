@@ -1,7 +1,6 @@
 #include "edgepoint/point_cache.h"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <limits>
 
@@ -10,7 +9,7 @@
 namespace arris {
 namespace {
 
-constexpr int kMantissaBits = 9, kExponentBias = 15, kMostExponent = 31;
+constexpr int kMostExponent = 31;
 constexpr std::size_t kNoBlock = ~std::size_t{0};
 
 }  // namespace
@@ -21,9 +20,9 @@ std::uint32_t pack_radiance(Rgb radiance) {
   const Rgb c{clamped(radiance.x), clamped(radiance.y), clamped(radiance.z)};
   const float largest = max_component(c);
   if (!(largest > 0)) return 0;
-  int exponent = std::max(-kExponentBias - 1, std::ilogb(largest)) + 1 + kExponentBias;
-  float scale = std::ldexp(1.0F, kMantissaBits + kExponentBias - exponent);
-  if (std::lround(largest * scale) == 1 << kMantissaBits) {
+  int exponent = std::max(-kRadianceBias - 1, std::ilogb(largest)) + 1 + kRadianceBias;
+  float scale = std::ldexp(1.0F, kRadianceBits + kRadianceBias - exponent);
+  if (std::lround(largest * scale) == 1 << kRadianceBits) {
     ++exponent;
     scale *= 0.5F;
   }
@@ -32,110 +31,105 @@ std::uint32_t pack_radiance(Rgb radiance) {
          std::uint32_t(std::min(exponent, kMostExponent)) << 27U;
 }
 
-Rgb unpack_radiance(std::uint32_t packed) {
-  // 2^(exponent − bias − mantissa bits), made from its bits.
-  const float scale =
-      std::bit_cast<float>(((packed >> 27U) + 127 - kExponentBias - kMantissaBits) << 23U);
-  return Rgb{float(packed & 511U), float(packed >> 9U & 511U), float(packed >> 18U & 511U)} * scale;
-}
-
 PointCache::PointCache(std::size_t capacity)
     : most_blocks_((capacity + kPointBlock - 1) / kPointBlock + 2) {
   ARRIS_CHECK(most_blocks_ <= kMostPoints / kPointBlock, double(capacity));
   open_.fill(kNoBlock);
+  const std::size_t places = most_blocks_ * kPointBlock;
+  x_.resize(places);
+  y_.resize(places);
+  z_.resize(places);
+  radiance_.resize(places);
+  object_.resize(places);
+  born_.resize(places);
 }
 
-PointBlock& PointCache::room_for(bool far, std::uint32_t frame) {
+std::size_t PointCache::room_for(bool far, std::uint32_t frame) {
   std::size_t& open = open_[far ? 1 : 0];
-  if (open != kNoBlock && blocks_[open]->count < kPointBlock) return *blocks_[open];
+  if (open != kNoBlock && blocks_[open].count < kPointBlock) return open;
   if (blocks_.size() < most_blocks_) {
     open = blocks_.size();
-    blocks_.push_back(std::make_unique<PointBlock>());
+    blocks_.emplace_back();
   } else {
     // Of those of which as little is seen, the one that is oldest.
     std::size_t worst = kNoBlock;
     for (std::size_t i = 0; i < blocks_.size(); ++i) {
       if (i == open_[0] || i == open_[1]) continue;
       const auto rank = [&](std::size_t b) {
-        return std::pair(blocks_[b]->seen / 16, blocks_[b]->filled);
+        return std::pair(blocks_[b].seen / 16, blocks_[b].filled);
       };
       if (worst == kNoBlock || rank(i) < rank(worst)) worst = i;
     }
     open = worst;
-    blocks_[open]->count = 0;
+    blocks_[open] = PointBlock();
   }
-  PointBlock& block = *blocks_[open];
-  block.is_far = far;
-  block.seen = kPointBlock;
-  block.filled = frame;
-  return block;
+  blocks_[open].is_far = far;
+  blocks_[open].filled = frame;
+  return open;
 }
 
-void PointCache::put(PointBlock& block, std::uint32_t i, const ShadedPoint& point,
+void PointCache::put(PointBlock& block, PointNumber number, const ShadedPoint& point,
                      std::uint32_t frame) {
-  block.x[i] = point.position.x;
-  block.y[i] = point.position.y;
-  block.z[i] = point.position.z;
-  block.radiance[i] = pack_radiance(point.radiance);
-  block.object[i] = point.object;
-  block.born[i] = std::uint16_t(frame);
-  const bool is_first = block.count == 1;
-  block.lower = is_first ? point.position : min(block.lower, point.position);
-  block.upper = is_first ? point.position : max(block.upper, point.position);
+  x_[number] = point.position.x;
+  y_[number] = point.position.y;
+  z_[number] = point.position.z;
+  radiance_[number] = pack_radiance(point.radiance);
+  object_[number] = point.object;
+  born_[number] = std::uint16_t(frame);
+  const bool is_only = block.count == 1;
+  block.lower = is_only ? point.position : min(block.lower, point.position);
+  block.upper = is_only ? point.position : max(block.upper, point.position);
 }
 
 void PointCache::add(std::span<const ShadedPoint> points, std::uint32_t frame) {
   for (const ShadedPoint& point : points) {
     const bool far = point.object == kFarObject;
-    if (point.replaces != kNoPoint && point.replaces / kPointBlock < blocks_.size()) {
-      PointBlock& old = *blocks_[point.replaces / kPointBlock];
-      const std::uint32_t place = point.replaces % kPointBlock;
-      if (place < old.count) {
-        if (old.is_far == far) {
-          put(old, place, point, frame);
-          continue;
-        }
-        old.x[place] = std::numeric_limits<float>::quiet_NaN();  // it is seen nowhere
+    const std::size_t old = point.replaces / kPointBlock;
+    if (old < blocks_.size() && point.replaces % kPointBlock < blocks_[old].count) {
+      if (blocks_[old].is_far == far) {
+        put(blocks_[old], point.replaces, point, frame);
+        continue;
       }
+      x_[point.replaces] = std::numeric_limits<float>::quiet_NaN();  // it is seen nowhere
     }
-    PointBlock& block = room_for(far, frame);
+    const std::size_t open = room_for(far, frame);
+    PointBlock& block = blocks_[open];
+    const auto number = PointNumber(open * kPointBlock + block.count);
     ++block.count;
-    put(block, block.count - 1, point, frame);
+    put(block, number, point, frame);
   }
 }
 
 void PointCache::move(std::uint32_t object, const Affine3d& to_from, std::uint32_t frame) {
-  for (const std::unique_ptr<PointBlock>& block : blocks_) {
-    bool moved = false;
-    for (std::uint32_t i = 0; i < block->count; ++i) {
-      if (block->object[i] != object) continue;
-      const Vec3f p(transform_point(to_from, Vec3d(block->x[i], block->y[i], block->z[i])));
-      block->x[i] = p.x;
-      block->y[i] = p.y;
-      block->z[i] = p.z;
-      block->born[i] = std::uint16_t(frame - kStaleAge);
-      block->lower = min(block->lower, p);
-      block->upper = max(block->upper, p);
-      moved = true;
+  for (std::size_t b = 0; b < blocks_.size(); ++b) {
+    PointBlock& block = blocks_[b];
+    const auto first = PointNumber(b * kPointBlock);
+    for (PointNumber i = first; i < first + block.count; ++i) {
+      if (object_[i] != object) continue;
+      const Vec3f p(transform_point(to_from, Vec3d(position(i))));
+      x_[i] = p.x;
+      y_[i] = p.y;
+      z_[i] = p.z;
+      born_[i] = std::uint16_t(frame - kStaleAge);
+      block.lower = min(block.lower, p);
+      block.upper = max(block.upper, p);
     }
-    if (moved) block->seen = std::max(block->seen, 1U);
   }
 }
 
-void PointCache::clear() {
-  for (const std::unique_ptr<PointBlock>& block : blocks_) block->count = 0;
-  open_.fill(kNoBlock);
-  blocks_.clear();
-}
-
 void PointCache::set_seen(std::span<const std::uint32_t> seen) {
-  for (std::size_t i = 0; i < seen.size(); ++i) blocks_[i]->seen = seen[i];
+  for (std::size_t i = 0; i < seen.size(); ++i) blocks_[i].seen = seen[i];
 }
 
 std::size_t PointCache::size() const {
   std::size_t count = 0;
-  for (const std::unique_ptr<PointBlock>& block : blocks_) count += block->count;
+  for (const PointBlock& block : blocks_) count += block.count;
   return count;
+}
+
+std::size_t PointCache::bytes() const {
+  return x_.size() * (3 * sizeof(float) + 2 * sizeof(std::uint32_t) + sizeof(std::uint16_t)) +
+         blocks_.size() * sizeof(PointBlock);
 }
 
 }  // namespace arris

@@ -10,9 +10,9 @@
 #pragma once
 
 #include <array>
+#include <bit>
 #include <cstddef>
 #include <cstdint>
-#include <memory>
 #include <span>
 #include <vector>
 
@@ -37,16 +37,19 @@ struct ShadedPoint {
 
 // Shared exponent, nine bits a channel: 0 to 65408, a step of 1/512 of the largest channel's power of two.
 std::uint32_t pack_radiance(Rgb radiance);
-Rgb unpack_radiance(std::uint32_t packed);
+inline constexpr int kRadianceBits = 9, kRadianceBias = 15;
+inline Rgb unpack_radiance(std::uint32_t packed) {
+  // 2^(exponent − bias − bits), made from its bits.
+  const float scale =
+      std::bit_cast<float>(((packed >> 27U) + 127U - kRadianceBias - kRadianceBits) << 23U);
+  return Rgb{float(packed & 511U), float(packed >> 9U & 511U), float(packed >> 18U & 511U)} * scale;
+}
 
 inline constexpr std::uint32_t kPointBlock = 256;
 
+// What is known of kPointBlock consecutive points.
 struct PointBlock {
-  alignas(64) std::array<float, kPointBlock> x, y, z;
-  alignas(64) std::array<std::uint32_t, kPointBlock> radiance;
-  alignas(64) std::array<std::uint32_t, kPointBlock> object;
-  alignas(64) std::array<std::uint16_t, kPointBlock> born;  // the frame's number, modulo 2^16
-  std::uint32_t count = 0;
+  std::uint32_t count = 0;           // of its points; the first of its places
   std::uint32_t seen = kPointBlock;  // of its points, in the last frame
   std::uint32_t filled = 0;          // the frame in which the first point came
   bool is_far = false;
@@ -65,46 +68,47 @@ class PointCache {
   // Makes points old: those for which is_stale(position) holds, of blocks for which may_hold(lower, upper) does.
   template <class MayHold, class IsStale>
   void make_old(std::uint32_t frame, const MayHold& may_hold, const IsStale& is_stale);
-  // Forgets all points.
-  void clear();
 
-  [[nodiscard]] std::span<const std::unique_ptr<PointBlock>> blocks() const { return blocks_; }
-  [[nodiscard]] const PointBlock& block_of(PointNumber point) const {
-    return *blocks_[point / kPointBlock];
-  }
-  [[nodiscard]] Rgb radiance_of(PointNumber point) const {
-    return unpack_radiance(block_of(point).radiance[point % kPointBlock]);
-  }
+  [[nodiscard]] std::span<const PointBlock> blocks() const { return blocks_; }
+  // By point number, for all blocks.
+  [[nodiscard]] const float* x() const { return x_.data(); }
+  [[nodiscard]] const float* y() const { return y_.data(); }
+  [[nodiscard]] const float* z() const { return z_.data(); }
+  [[nodiscard]] const std::uint32_t* packed_radiance() const { return radiance_.data(); }
+  // The frames' numbers, modulo 2^16.
+  [[nodiscard]] const std::uint16_t* born() const { return born_.data(); }
+
   // How many points of each block were seen.
   void set_seen(std::span<const std::uint32_t> seen);
   [[nodiscard]] std::size_t size() const;
-  [[nodiscard]] std::size_t bytes() const { return blocks_.size() * sizeof(PointBlock); }
+  [[nodiscard]] std::size_t bytes() const;
 
  private:
-  static void put(PointBlock& block, std::uint32_t place, const ShadedPoint& point,
-                  std::uint32_t frame);
-  PointBlock& room_for(bool far, std::uint32_t frame);
+  void put(PointBlock& block, PointNumber number, const ShadedPoint& point, std::uint32_t frame);
+  std::size_t room_for(bool far, std::uint32_t frame);
+  [[nodiscard]] Vec3f position(PointNumber number) const {
+    return {x_[number], y_[number], z_[number]};
+  }
 
   std::size_t most_blocks_;
-  std::vector<std::unique_ptr<PointBlock>> blocks_;
+  std::vector<PointBlock> blocks_;
+  std::vector<float> x_, y_, z_;
+  std::vector<std::uint32_t> radiance_, object_;
+  std::vector<std::uint16_t> born_;
   std::array<std::size_t, 2> open_{};  // the block being filled: of near points, and of far ones
 };
 
-// The age of points that show what is no longer so; others never get as old.
+// Points of this age show what is no longer so, or nearly.
 inline constexpr std::uint16_t kStaleAge = 0x8000;
-
-inline std::uint16_t age_of(const PointBlock& block, std::uint32_t place, std::uint32_t frame) {
-  return std::uint16_t(frame - block.born[place]);
-}
 
 template <class MayHold, class IsStale>
 void PointCache::make_old(std::uint32_t frame, const MayHold& may_hold, const IsStale& is_stale) {
-  for (const std::unique_ptr<PointBlock>& block : blocks_) {
-    if (block->is_far || block->count == 0 || !may_hold(block->lower, block->upper)) continue;
-    for (std::uint32_t i = 0; i < block->count; ++i) {
-      if (is_stale(Vec3f{block->x[i], block->y[i], block->z[i]})) {
-        block->born[i] = std::uint16_t(frame - kStaleAge);
-      }
+  for (std::size_t b = 0; b < blocks_.size(); ++b) {
+    const PointBlock& block = blocks_[b];
+    if (block.is_far || block.count == 0 || !may_hold(block.lower, block.upper)) continue;
+    const auto first = PointNumber(b * kPointBlock);
+    for (PointNumber i = first; i < first + block.count; ++i) {
+      if (is_stale(position(i))) born_[i] = std::uint16_t(frame - kStaleAge);
     }
   }
 }

@@ -23,7 +23,14 @@ struct FloatView {
   float width, height;
 };
 
-// What becomes of the points of a block.
+// The points of a block.
+struct BlockPoints {
+  const float *x, *y, *z;
+  std::uint32_t count;
+  bool is_far;
+};
+
+// What becomes of them.
 struct BlockPixels {
   alignas(64) std::array<std::int32_t, kPointBlock> pixel;  // negative: in none
   alignas(64) std::array<std::uint32_t, kPointBlock> cell;
@@ -40,7 +47,7 @@ namespace {
 namespace hn = hwy::HWY_NAMESPACE;
 
 // All places of the block, also those beyond its count.
-void project_block(const FloatView& view, const PointBlock& block, BlockPixels& out) {
+void project_block(const FloatView& view, const BlockPoints& block, BlockPixels& out) {
   const hn::ScalableTag<float> f;
   const hn::RebindToSigned<decltype(f)> s;
   const hn::RebindToUnsigned<decltype(f)> u;
@@ -56,9 +63,9 @@ void project_block(const FloatView& view, const PointBlock& block, BlockPixels& 
   // Behind the eye, or so near to it that the division overflows.
   const auto least = hn::Set(f, 1e-30F);
   for (std::size_t i = 0; i < block.count; i += hn::Lanes(f)) {
-    const auto x = hn::Sub(hn::Load(f, block.x.data() + i), eye_x);
-    const auto y = hn::Sub(hn::Load(f, block.y.data() + i), eye_y);
-    const auto z = hn::Sub(hn::Load(f, block.z.data() + i), eye_z);
+    const auto x = hn::Sub(hn::LoadU(f, block.x + i), eye_x);
+    const auto y = hn::Sub(hn::LoadU(f, block.y + i), eye_y);
+    const auto z = hn::Sub(hn::LoadU(f, block.z + i), eye_z);
     const auto w = row(view.w, x, y, z);
     const auto inverse = hn::Div(one, hn::Max(w, least));
     const auto px = hn::Mul(row(view.x, x, y, z), inverse);
@@ -131,13 +138,15 @@ void project_points(const PixelView& view, const PointCache& cache, RowBand band
   std::fill(points.begin() + first, points.begin() + last, PointKey());
   BlockPixels pixels;
   std::uint32_t number = 0;
-  for (const std::unique_ptr<PointBlock>& block : cache.blocks()) {
-    if (block->count > 0 && may_touch(view, *block, band)) {
-      HWY_DYNAMIC_DISPATCH(project_block)(floats, *block, pixels);
-      for (std::uint32_t i = 0; i < block->count; ++i) {
+  for (const PointBlock& block : cache.blocks()) {
+    if (block.count > 0 && may_touch(view, block, band)) {
+      const BlockPoints places{cache.x() + number, cache.y() + number, cache.z() + number,
+                               block.count, block.is_far};
+      HWY_DYNAMIC_DISPATCH(project_block)(floats, places, pixels);
+      for (std::uint32_t i = 0; i < block.count; ++i) {
         const std::int32_t pixel = pixels.pixel[i];
         if (pixel < first || pixel >= last) continue;
-        const std::uint32_t depth = block->is_far ? kFarDepthBits : pixels.depth_bits[i];
+        const std::uint32_t depth = block.is_far ? kFarDepthBits : pixels.depth_bits[i];
         const PointKey key(depth, number + i, pixels.cell[i]);
         PointKey& nearest = points[std::size_t(pixel)];
         if (key < nearest) nearest = key;

@@ -23,6 +23,8 @@ constexpr float kOwnWeight = 1;
 
 // What a pixel wants whose point shows what is no longer so.
 constexpr std::uint8_t kStaleWanted = 160;
+// Frames after which a point gets no older.
+constexpr std::uint16_t kOld = 254;
 
 class Band {
  public:
@@ -38,7 +40,7 @@ class Band {
         samples_(kSampleRows, width_),
         primary_(kPrimaryRows, width_),
         weights_(std::size_t(kPrimaryRows) * weight_stride()),
-        ages_(std::size_t(kSampleRows) * std::size_t(width_)) {
+        wishes_(std::size_t(kSampleRows) * std::size_t(width_)) {
     report_.seen.assign(cache.blocks().size(), 0);
   }
 
@@ -62,8 +64,8 @@ class Band {
   [[nodiscard]] float* weight_row(int y) {
     return weights_.data() + std::size_t((y + kPrimaryRows) % kPrimaryRows) * weight_stride();
   }
-  [[nodiscard]] std::uint8_t* age_row(int y) {
-    return ages_.data() + std::size_t((y + kSampleRows) % kSampleRows) * std::size_t(width_);
+  [[nodiscard]] std::uint8_t* wish_row(int y) {
+    return wishes_.data() + std::size_t((y + kSampleRows) % kSampleRows) * std::size_t(width_);
   }
   [[nodiscard]] PrimaryRows primary_rows(int y) { return {primary_.row(y), weight_row(y)}; }
 
@@ -73,20 +75,23 @@ class Band {
     const bool inside = y >= 0 && y < image_.height_px;
     const PointKey* const keys = inside ? image_.points.data() + image_.offset(0, y) : nullptr;
     const bool own = y >= band_.first && y < band_.last;
-    std::uint8_t* const ages = age_row(y);
+    std::uint8_t* const own_wish = wish_row(y);
+    const std::uint32_t* const radiance = cache_.packed_radiance();
+    const std::uint16_t* const born = cache_.born();
     for (int x = 0; x < width_; ++x) {
       Rgb color;
+      std::uint8_t wish = 0;
       if (inside && !keys[x].is_none()) {
         const PointNumber point = keys[x].point();
-        const PointBlock& block = cache_.block_of(point);
-        color = unpack_radiance(block.radiance[point % kPointBlock]);
-        const std::uint32_t age = age_of(block, point % kPointBlock, settings_.frame);
-        ages[x] = std::uint8_t(age >= kStaleAge ? 255 : std::min(age, 254U));
+        color = unpack_radiance(radiance[point]);
+        const auto age = std::uint16_t(settings_.frame - born[point]);
+        wish = age >= kStaleAge ? kStaleWanted : std::uint8_t(1 + std::min(age, kOld) / 16);
         if (own) ++report_.seen[point / kPointBlock];
       }
       row.r[x] = color.x;
       row.g[x] = color.y;
       row.b[x] = color.z;
+      own_wish[x] = wish;
     }
   }
 
@@ -95,11 +100,7 @@ class Band {
     const PrimaryRows here = primary_rows(y);
     const PrimaryNeighborhood rows{primary_rows(y - 1), here, primary_rows(y + 1)};
     float* const out = picture_.values.data() + picture_.offset(0, y);
-    for (int x = 0; x < width_; ++x) {
-      out[3 * x] = here.color.r[x];
-      out[3 * x + 1] = here.color.g[x];
-      out[3 * x + 2] = here.color.b[x];
-    }
+    interleave_row(here.color, width_, out);
     report_.times.interpolation += lap();
     for_crossed(y, [&](int x) {
       if (image_.codes[image_.offset(x, y)].is_simple()) {
@@ -146,19 +147,15 @@ class Band {
 
   void set_wanted(int y, const float* weight) {
     const std::size_t offset = image_.offset(0, y);
-    const std::uint8_t* const ages = age_row(y);
+    std::uint8_t* const wanted = wanted_.data() + offset;
+    const std::uint8_t* const own = wish_row(y);
     for (int x = 0; x < width_; ++x) {
-      const std::size_t at = offset + std::size_t(x);
-      std::uint8_t& wanted = wanted_[at];
-      if (!(weight[x] > 0)) {
-        wanted = 255;
-        report_.unresolved.push_back(std::uint32_t(at));
-      } else if (image_.points[at].is_none()) {
-        // The less is known of it, the more: 200 / (1 + 8 w).
-        wanted = std::uint8_t(200 / (1 + 8 * std::min(weight[x], kOwnWeight)));
-      } else {
-        wanted = ages[x] == 255 ? kStaleWanted : std::uint8_t(1 + ages[x] / 16);
-      }
+      // The less is known of it, the more: 200 / (1 + 8 w).
+      const auto open = std::uint8_t(200 / (1 + 8 * std::min(weight[x], kOwnWeight)));
+      wanted[x] = own[x] != 0 ? own[x] : open;
+      if (weight[x] > 0) continue;
+      wanted[x] = 255;
+      report_.unresolved.push_back(std::uint32_t(offset) + std::uint32_t(x));
     }
   }
 
@@ -171,7 +168,7 @@ class Band {
   int width_;
   ColorRows samples_, primary_;
   std::vector<float> weights_;
-  std::vector<std::uint8_t> ages_;
+  std::vector<std::uint8_t> wishes_;
   BandReport report_;
   Clock::time_point last_lap_ = Clock::now();
 };

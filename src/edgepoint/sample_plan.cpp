@@ -1,6 +1,7 @@
 #include "edgepoint/sample_plan.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numeric>
 
@@ -8,16 +9,23 @@ namespace arris {
 namespace {
 
 constexpr int kTile = 32;  // pixels
+constexpr int kPattern = 128;
 
 float fraction(float v) {
   return v - std::floor(v);
 }
 
-// Evenly spread over any neighbourhood; the golden ratio spreads a pixel's values over the frames.
-float dither(int x, int y, std::uint32_t frame) {
-  const float pattern =
-      fraction(52.9829189F * fraction(0.06711056F * float(x) + 0.00583715F * float(y)));
-  return fraction(pattern + 0.61803399F * float(frame % 1024));
+// Evenly spread over any neighbourhood, in parts of 2^16.
+std::array<std::uint16_t, std::size_t(kPattern* kPattern)> make_pattern() {
+  std::array<std::uint16_t, std::size_t(kPattern * kPattern)> pattern{};
+  for (int y = 0; y < kPattern; ++y) {
+    for (int x = 0; x < kPattern; ++x) {
+      const float noise =
+          fraction(52.9829189F * fraction(0.06711056F * float(x) + 0.00583715F * float(y)));
+      pattern[std::size_t(y * kPattern + x)] = std::uint16_t(noise * 65536);
+    }
+  }
+  return pattern;
 }
 
 }  // namespace
@@ -27,14 +35,23 @@ std::vector<std::uint32_t> plan_samples(std::span<const std::uint8_t> wanted,
   std::vector<std::uint32_t> plan;
   const std::uint64_t total = std::accumulate(wanted.begin(), wanted.end(), std::uint64_t{0});
   if (total == 0 || settings.count == 0) return plan;
-  const float chance = float(double(settings.count) / double(total));
+  static const auto pattern = make_pattern();
+  const double chance = 65536.0 * double(settings.count) / double(total);
+  std::array<std::uint32_t, 256> limit{};
+  for (std::size_t w = 0; w < limit.size(); ++w) {
+    limit[w] = std::uint32_t(std::min(65536.0, chance * double(w)));
+  }
+  // The golden ratio spreads a pixel's values over the frames.
+  const auto shift = std::uint16_t(settings.frame * 40503U);
   plan.reserve(settings.count + settings.count / 8);
   for (int y0 = 0; y0 < settings.height_px; y0 += kTile) {
     for (int x0 = 0; x0 < settings.width_px; x0 += kTile) {
       for (int y = y0; y < std::min(y0 + kTile, settings.height_px); ++y) {
         const std::size_t row = std::size_t(y) * std::size_t(settings.width_px);
         for (int x = x0; x < std::min(x0 + kTile, settings.width_px); ++x) {
-          if (dither(x, y, settings.frame) < chance * float(wanted[row + std::size_t(x)])) {
+          const auto noise =
+              std::uint16_t(pattern[std::size_t(y % kPattern * kPattern + x % kPattern)] + shift);
+          if (noise < limit[wanted[row + std::size_t(x)]]) {
             plan.push_back(std::uint32_t(row) + std::uint32_t(x));
           }
         }

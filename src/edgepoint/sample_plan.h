@@ -17,7 +17,7 @@ namespace arris {
 
 struct SamplePlanSettings {
   int width_px = 0, height_px = 0;
-  std::size_t count = 0;  // about so many, and no more
+  std::size_t count = 0;  // about so many
   std::uint32_t frame = 0;
 };
 
