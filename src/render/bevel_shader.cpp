@@ -107,7 +107,7 @@ std::vector<BevelShader> make_bevel_shaders(const SceneGeometry& geometry,
     if (!s || s->method != RoundMethod::shader) continue;
     const bool stays =
         before != nullptr && (std::holds_alternative<AutoRadius>(s->radius) ||
-                              before->sources[i].linear == object.world_from_object.linear);
+                              before->sources[i].place.linear == object.world_from_object.linear);
     if (stays && !s->shader.delta) {
       shaders[i] = before->shaders[i];
       any = any || shaders[i].delta > 0;

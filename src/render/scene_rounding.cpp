@@ -64,7 +64,7 @@ class Maker {
       if (!tasks_[i].result) build(tasks_[i]);
     });
     for (Task& task : tasks_) attach(task);
-    if (out_.any) find_void_neighbors(geometry_, out_, options_.threads);
+    if (out_.any) find_void_neighbors(geometry_, out_, options_.threads, before_);
     out_.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     return std::move(out_);
   }
@@ -86,8 +86,9 @@ class Maker {
     if (before_ == nullptr) return nullptr;
     const RoundingSource& source = before_->sources[i];
     const RoundingSource& now = out_.sources[i];
-    return (now.scale ? now.scale == source.scale : now.linear == source.linear) ? &source
-                                                                                 : nullptr;
+    return (now.scale ? now.scale == source.scale : now.place.linear == source.place.linear)
+               ? &source
+               : nullptr;
   }
 
   // World units.
@@ -105,10 +106,10 @@ class Maker {
     std::vector<double> radii(out_.sources.size(), 0);
     parallel_for(radii.size(), {.grain = 8, .threads = options_.threads}, [&](std::size_t i) {
       const auto index = std::uint32_t(i);
+      out_.sources[i].place = object_of(index).world_from_object;
       if (record(index).triangles == nullptr) return;
       RoundingSource& source = out_.sources[i];
-      source.linear = object_of(index).world_from_object.linear;
-      source.scale = instance_scale(record(index), source.linear);
+      source.scale = instance_scale(record(index), source.place.linear);
       source.radius = radii[i] = radius_of(index);
     });
     std::map<std::tuple<std::uint32_t, double, int, double>, std::size_t> shared;

@@ -74,8 +74,11 @@ struct RoundingSource {
   RoundingOptions options;                   // of `rounding`
   double radius = 0;                         // in the world
   std::optional<double> scale;  // of an instance by a similarity, in object space; empty: …
-  Mat3d linear;                 // … made for this linear part
+  Affine3d place;               // … made for this linear part
 };
+
+// Of each solid of a geometry, or of all of it, points whose hull holds it; in the mesh's space.
+using SolidPoints = std::vector<std::vector<Vec3d>>;
 
 struct SceneRounding {
   std::optional<RoundingSettings> scene_default;
@@ -84,6 +87,9 @@ struct SceneRounding {
   std::vector<std::shared_ptr<const Rounding>> roundings;
   std::vector<std::unique_ptr<const RoundingFrame>> frames;
   std::vector<std::vector<VoidNeighbors>> neighbors;  // per geometry; empty: none
+  // What they were found from, per geometry; empty where nothing is rounded.
+  std::vector<std::shared_ptr<const SolidPoints>> points;
+  std::vector<std::vector<std::uint32_t>> near;  // geometries whose boxes come near its voids
   bool any = false;
   std::vector<BevelShader> shaders;  // by geometry; empty if none has one
   // What was built, for PrepareStats.
