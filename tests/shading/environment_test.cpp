@@ -20,7 +20,7 @@ HdrEnvironment marked_map(int column, int row) {
   HdrEnvironment map;
   map.width_px = 16;
   map.height_px = 8;
-  map.radiance.assign(16 * 8, Rgb(0.0F));
+  map.radiance.edit().assign(16 * 8, Rgb(0.0F));
   map.radiance[std::size_t(row * 16 + column)] = Rgb(1.0F);
   return map;
 }
