@@ -54,7 +54,7 @@ std::shared_ptr<const PreparedScene> prepare_again(const PreparedScene& prepared
 // Precondition: meshes, CSG trees, materials and textures are the same, not copies (SharedVector::is_same_as()); the
 // objects' parts, materials and roundings are equal, and so is the environment. Throws Error{input} otherwise, and for
 // what validate_scene() says of cameras, transforms and lights.
-// Cost: like that of the objects that move, for all of them about 1 µs each; bevel meshes are built anew.
+// Cost: a few microseconds for each object, besides the points of those that move; bevel meshes are made anew.
 std::shared_ptr<const PreparedScene> prepare_moved(const PreparedScene& prepared, Scene moved,
                                                    const PrepareOptions& options = {});
 

@@ -75,9 +75,12 @@ struct Material {
 };
 
 // The rounding radius of an object, in world units whatever the instance's scale.
-struct AutoRadius {};  // reads well at the picture's size, fits the part
+struct AutoRadius {  // reads well at the picture's size, fits the part
+  friend bool operator==(const AutoRadius&, const AutoRadius&) = default;
+};
 struct PercentOfInradius {
   double percent = 10;
+  friend bool operator==(const PercentOfInradius&, const PercentOfInradius&) = default;
 };
 using Radius = std::variant<AutoRadius, double, PercentOfInradius>;
 
@@ -89,6 +92,7 @@ struct BevelShaderSettings {
   std::optional<double> delta;    // depth of the sampling origin; empty: the rounding radius
   std::optional<double> perturb;  // spread of the directions around N; empty: 1
   int divisions = 3;              // Divisions³ rays
+  friend bool operator==(const BevelShaderSettings&, const BevelShaderSettings&) = default;
 };
 
 struct RoundingSettings {
@@ -98,6 +102,7 @@ struct RoundingSettings {
   double min_angle = radians(30);  // turns below are part of a smooth surface
   int subdivisions = 3;            // method mesh
   BevelShaderSettings shader;      // method shader
+  friend bool operator==(const RoundingSettings&, const RoundingSettings&) = default;
 };
 
 struct Object {
@@ -146,6 +151,7 @@ using Light = std::variant<PointLight, SpotLight, DirectionalLight, AreaLight>;
 
 struct ConstantEnvironment {
   Rgb radiance{0, 0, 0};
+  friend bool operator==(const ConstantEnvironment&, const ConstantEnvironment&) = default;
 };
 // Clear sky after Preetham, Shirley and Smits, "A Practical Analytic Model for Daylight" (1999), with its sun.
 struct SkyEnvironment {
@@ -154,6 +160,7 @@ struct SkyEnvironment {
   double strength = 1;
   bool sun = true;
   Vec3d up{0, 0, 1};
+  friend bool operator==(const SkyEnvironment&, const SkyEnvironment&) = default;
 };
 // Equirectangular map seen from its middle: the centre column looks along the map's +x, the column a
 // quarter of the width to its right along -y (as Blender has it). The map's z is taken to `up` by the
@@ -166,11 +173,13 @@ struct HdrEnvironment {
   double strength = 1;
   double rotation = 0;  // about up
   Vec3d up{0, 0, 1};
+  friend bool operator==(const HdrEnvironment&, const HdrEnvironment&) = default;
 };
 // Soft three-light room for product pictures; the program's default.
 struct StudioEnvironment {
   double strength = 1;
   Vec3d up{0, 0, 1};
+  friend bool operator==(const StudioEnvironment&, const StudioEnvironment&) = default;
 };
 using Environment =
     std::variant<ConstantEnvironment, SkyEnvironment, HdrEnvironment, StudioEnvironment>;

@@ -1,8 +1,7 @@
 // shared_vector.h — a vector whose copies share their elements until one of them is changed
 // What       copying a Scene costs nothing per triangle or texel. Reading through a const vector never copies the
 //            elements; every access through one that is not const does, if they are shared.
-// Limits     references and iterators end where a std::vector's would, and when the vector is first changed after a
-//            copy
+// Limits     references and iterators end where a std::vector's would, and with the first change after a copy
 // Cost       a reference count a copy; copies in different threads are independent
 #pragma once
 
@@ -70,6 +69,9 @@ class SharedVector {
   void resize(std::size_t size) { edit().resize(size); }
   void clear() { elements_.reset(); }
 
+  friend bool operator==(const SharedVector& a, const SharedVector& b) {
+    return a.is_same_as(b) || a.read() == b.read();
+  }
   // Both have one and the same elements, or none.
   [[nodiscard]] bool is_same_as(const SharedVector& other) const {
     return elements_ == other.elements_ || (empty() && other.empty());

@@ -15,40 +15,26 @@
 
 namespace arris {
 
-namespace {
-
-// The callbacks of Embree's threads see what was written before the build.
-struct BoxUser : BoxGeometry {
-  HappensBefore written;
-};
-
-}  // namespace
-
-struct EmbreeScene::Device {
-  RTCDevice handle = nullptr;
-  RTCScene top = nullptr;
-  std::vector<RTCScene> mesh_scenes;  // per mesh; null where the mesh is not instanced
-  std::vector<BoxUser> box_users;     // the addresses stay
-  std::atomic<std::int64_t> bytes{0};
-  HappensBefore created, counted;  // Embree's threads call back
-
+// Scenes share it; the last one ends it.
+class EmbreeScene::Device : public std::enable_shared_from_this<Device> {
+ public:
   explicit Device(int threads) {
     const std::string config =
         threads > 0 ? "threads=" + std::to_string(usable_threads(threads)) : std::string();
-    handle = rtcNewDevice(config.c_str());
-    if (handle == nullptr) {
+    handle_ = rtcNewDevice(config.c_str());
+    if (handle_ == nullptr) {
       throw Error(Error::Kind::failed, "",
                   "Embree cannot start (error " + std::to_string(int(rtcGetDeviceError(nullptr))) +
                       "): it needs an x86-64 processor with SSE2");
     }
-    created.release();
+    created_.release();
     rtcSetDeviceMemoryMonitorFunction(
-        handle,
+        handle_,
         [](void* user, ssize_t change, bool) {
           auto* device = static_cast<Device*>(user);
-          device->created.acquire();
-          device->bytes += change;
-          device->counted.release();
+          device->created_.acquire();
+          device->bytes_ += change;
+          device->counted_.release();
           return true;
         },
         this);
@@ -56,17 +42,31 @@ struct EmbreeScene::Device {
   Device(const Device&) = delete;
   Device& operator=(const Device&) = delete;
   ~Device() {
-    if (top != nullptr) {
-      rtcReleaseScene(top);
-    }
-    for (RTCScene scene : mesh_scenes) {
-      if (scene != nullptr) {
-        rtcReleaseScene(scene);
-      }
-    }
-    rtcReleaseDevice(handle);
-    counted.acquire();
+    rtcReleaseDevice(handle_);
+    counted_.acquire();
   }
+
+  [[nodiscard]] RTCDevice handle() const { return handle_; }
+  [[nodiscard]] std::int64_t bytes() const { return bytes_; }
+
+  // Memory is counted until the last of them has gone: they keep the device.
+  SceneHandle make_scene() {
+    RTCScene scene = rtcNewScene(handle_);
+    rtcSetSceneFlags(scene, RTC_SCENE_FLAG_ROBUST | RTC_SCENE_FLAG_CONTEXT_FILTER_FUNCTION);
+    rtcSetSceneBuildQuality(scene, RTC_BUILD_QUALITY_MEDIUM);
+    return {scene, [self = shared_from_this()](RTCScene s) { rtcReleaseScene(s); }};
+  }
+
+ private:
+  RTCDevice handle_ = nullptr;
+  std::atomic<std::int64_t> bytes_{0};
+  HappensBefore created_, counted_;  // Embree's threads call back
+};
+
+// The callbacks of Embree's threads see what was written before the build.
+struct EmbreeScene::Boxes : BoxGeometry {
+  HappensBefore written;
+  SceneHandle scene;  // null: in the top one
 };
 
 namespace {
@@ -74,13 +74,6 @@ namespace {
 // A point made from barycentric weights and float vertices is off the triangle's plane by a rounding of
 // each coordinate; the ray kernel rounds differences and products of coordinates of that size a few times.
 constexpr float kRoundings = 8;
-
-RTCScene make_scene(RTCDevice device) {
-  RTCScene scene = rtcNewScene(device);
-  rtcSetSceneFlags(scene, RTC_SCENE_FLAG_ROBUST | RTC_SCENE_FLAG_CONTEXT_FILTER_FUNCTION);
-  rtcSetSceneBuildQuality(scene, RTC_BUILD_QUALITY_MEDIUM);
-  return scene;
-}
 
 void commit(RTCDevice device, RTCScene scene) {
   rtcCommitScene(scene);
@@ -136,8 +129,9 @@ unsigned attach_instance(RTCDevice device, RTCScene scene, RTCScene instanced, c
   return id;
 }
 
+template <class Boxes>
 void box_bounds(const RTCBoundsFunctionArguments* args) {
-  auto* user = static_cast<BoxUser*>(static_cast<BoxGeometry*>(args->geometryUserPtr));
+  auto* user = static_cast<Boxes*>(static_cast<BoxGeometry*>(args->geometryUserPtr));
   user->written.acquire();
   const Box3f& box = user->boxes[args->primID];
   RTCBounds* bounds = args->bounds_o;
@@ -149,11 +143,12 @@ void box_bounds(const RTCBoundsFunctionArguments* args) {
   bounds->upper_z = box.upper.z;
 }
 
-unsigned attach_boxes(RTCDevice device, RTCScene scene, BoxUser& boxes) {
+template <class Boxes>
+unsigned attach_box_geometry(RTCDevice device, RTCScene scene, Boxes& boxes) {
   RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_USER);
   rtcSetGeometryUserPrimitiveCount(geometry, unsigned(boxes.boxes.size()));
   rtcSetGeometryUserData(geometry, static_cast<BoxGeometry*>(&boxes));
-  rtcSetGeometryBoundsFunction(geometry, box_bounds, nullptr);
+  rtcSetGeometryBoundsFunction(geometry, box_bounds<Boxes>, nullptr);
   rtcSetGeometryIntersectFunction(geometry, boxes.intersect);
   rtcSetGeometryOccludedFunction(geometry, boxes.occluded);
   rtcCommitGeometry(geometry);
@@ -163,7 +158,8 @@ unsigned attach_boxes(RTCDevice device, RTCScene scene, BoxUser& boxes) {
 }
 
 // Which meshes become instances: those whose copies cost most, until the rest fits the bound.
-std::vector<bool> choose_instanced(const Scene& scene, std::uint64_t max_copied_triangles) {
+std::vector<bool> choose_instanced(const Scene& scene, const EmbreeSceneOptions& options) {
+  if (options.placement == Placement::movable) return std::vector<bool>(scene.meshes.size(), true);
   std::vector<std::uint64_t> copied(scene.meshes.size());
   std::vector<bool> used(scene.meshes.size());
   for (const Object& object : scene.objects) {
@@ -180,7 +176,7 @@ std::vector<bool> choose_instanced(const Scene& scene, std::uint64_t max_copied_
   std::uint64_t total = 0;
   for (const std::size_t mesh : order) {
     total += copied[mesh];
-    instanced[mesh] = total > max_copied_triangles;
+    instanced[mesh] = total > options.max_copied_triangles;
   }
   return instanced;
 }
@@ -194,14 +190,26 @@ double largest_coordinate(const Mesh& mesh, const Affine3d& m) {
   return largest;
 }
 
+// Of the box from low to high where the transform takes it.
+double largest_coordinate(Vec3d low, Vec3d high, const Affine3d& m) {
+  const Vec3d center = transform_point(m, low * 0.5 + high * 0.5), half = (high - low) * 0.5;
+  double largest = 0;
+  for (int axis = 0; axis < 3; ++axis) {
+    const double reach = std::abs(m.linear.x[axis]) * half.x + std::abs(m.linear.y[axis]) * half.y +
+                         std::abs(m.linear.z[axis]) * half.z;
+    largest = std::max(largest, std::abs(center[axis]) + reach);
+  }
+  return largest;
+}
+
 // An instance adds the rounding of the ray into object space, in object units, where the object-space ray
 // origin is as far out as the world origin seen from there.
-double instance_coordinate(const Mesh& mesh, const Affine3d& m) {
-  const double object_size = largest_coordinate(mesh, {});
+double instance_coordinate(Vec3d low, Vec3d high, const Affine3d& m) {
+  const double object_size = largest_coordinate(low, high, {});
   const Vec3d from_origin = transform_point(inverse(m), Vec3d());
   const double stretch = std::sqrt(length_squared(m.linear.x) + length_squared(m.linear.y) +
                                    length_squared(m.linear.z));
-  return largest_coordinate(mesh, m) + stretch * (object_size + length(from_origin));
+  return largest_coordinate(low, high, m) + stretch * (object_size + length(from_origin));
 }
 
 GeometryRecord make_record(const Scene& scene, ObjectId id) {
@@ -239,12 +247,63 @@ GeometryRecord make_box_record(const Scene& scene, const BoxGeometry& boxes) {
 
 EmbreeScene::EmbreeScene(const Scene& scene, const EmbreeSceneOptions& options,
                          std::vector<BoxGeometry> boxes)
-    : device_(std::make_unique<Device>(options.threads)) {
-  const std::vector<bool> instanced = choose_instanced(scene, options.max_copied_triangles);
-  device_->mesh_scenes.resize(scene.meshes.size());
-  RTCScene top = make_scene(device_->handle);
-  device_->top = top;
-  handle_ = top;
+    : device_(std::make_shared<Device>(options.threads)),
+      meshes_(scene.meshes),
+      placement_(options.placement),
+      instanced_(choose_instanced(scene, options)),
+      mesh_scenes_(scene.meshes.size()),
+      extents_(scene.meshes.size()),
+      top_(device_->make_scene()) {
+  attach_meshes(scene);
+  for (BoxGeometry& geometry : boxes) {
+    boxes_.push_back(std::make_shared<Boxes>(Boxes{std::move(geometry), {}, nullptr}));
+  }
+  attach_boxes(scene);
+  commit(device_->handle(), top_.get());
+}
+
+EmbreeScene::EmbreeScene(const EmbreeScene& before, const Scene& moved,
+                         std::vector<std::optional<BoxGeometry>> boxes)
+    : device_(before.device_),
+      meshes_(before.meshes_),
+      placement_(before.placement_),
+      instanced_(before.instanced_),
+      mesh_scenes_(before.mesh_scenes_),
+      extents_(before.extents_),
+      boxes_(before.boxes_),
+      top_(device_->make_scene()) {
+  attach_meshes(moved);
+  for (std::size_t i = 0; i < boxes.size(); ++i) {
+    if (boxes[i]) boxes_[i] = std::make_shared<Boxes>(Boxes{std::move(*boxes[i]), {}, nullptr});
+  }
+  attach_boxes(moved);
+  commit(device_->handle(), top_.get());
+}
+
+EmbreeScene::~EmbreeScene() = default;
+
+// The structure of a mesh is made when the first object needs it.
+void EmbreeScene::make_mesh_scene(const Scene& scene, std::uint32_t mesh) {
+  SceneHandle& handle = mesh_scenes_[mesh];
+  if (handle) return;
+  handle = device_->make_scene();
+  attach_triangles(device_->handle(), handle.get(), scene.meshes[mesh], {});
+  commit(device_->handle(), handle.get());
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  Extent& extent = extents_[mesh];
+  extent = {Vec3d(kInfinity), Vec3d(-kInfinity)};
+  for (const Vec3f& p : scene.meshes[mesh].positions) {
+    extent.low = min(extent.low, Vec3d(p));
+    extent.high = max(extent.high, Vec3d(p));
+  }
+}
+
+void EmbreeScene::add_record(unsigned id, const GeometryRecord& record) {
+  records_.resize(std::max<std::size_t>(records_.size(), id + 1));
+  records_[id] = record;
+}
+
+void EmbreeScene::attach_meshes(const Scene& scene) {
   records_.reserve(scene.objects.size());
   for (std::uint32_t i = 0; i < scene.objects.size(); ++i) {
     const Object& object = scene.objects[i];
@@ -253,48 +312,51 @@ EmbreeScene::EmbreeScene(const Scene& scene, const EmbreeSceneOptions& options,
     }
     const Mesh& mesh = scene.meshes[object.mesh.index];
     GeometryRecord record = make_record(scene, ObjectId{i});
-    record.instanced = instanced[object.mesh.index];
+    record.instanced = instanced_[object.mesh.index];
     double coordinate = 0;
     unsigned id = 0;
     if (record.instanced) {
-      RTCScene& mesh_scene = device_->mesh_scenes[object.mesh.index];
-      if (mesh_scene == nullptr) {
-        mesh_scene = make_scene(device_->handle);
-        attach_triangles(device_->handle, mesh_scene, mesh, {});
-        commit(device_->handle, mesh_scene);
-      }
-      id = attach_instance(device_->handle, top, mesh_scene, object.world_from_object);
+      make_mesh_scene(scene, object.mesh.index);
+      id = attach_instance(device_->handle(), top_.get(), mesh_scenes_[object.mesh.index].get(),
+                           object.world_from_object);
       record.positions = mesh.positions.data();
-      coordinate = instance_coordinate(mesh, object.world_from_object);
+      const Extent& extent = extents_[object.mesh.index];
+      coordinate = instance_coordinate(extent.low, extent.high, object.world_from_object);
     } else {
       const Attached attached =
-          attach_triangles(device_->handle, top, mesh, object.world_from_object);
+          attach_triangles(device_->handle(), top_.get(), mesh, object.world_from_object);
       id = attached.id;
       record.positions = attached.positions;
       coordinate = largest_coordinate(mesh, object.world_from_object);
     }
     record.position_error =
         float(kRoundings * std::numeric_limits<float>::epsilon() / 2 * coordinate);
-    records_.resize(std::max<std::size_t>(records_.size(), id + 1));
-    records_[id] = record;
+    add_record(id, record);
   }
-  device_->box_users.resize(boxes.size());
-  for (std::size_t i = 0; i < boxes.size(); ++i) {
-    BoxUser& user = device_->box_users[i];
-    static_cast<BoxGeometry&>(user) = std::move(boxes[i]);
-    user.written.release();
-    const unsigned id = attach_boxes(device_->handle, top, user);
-    box_records_.push_back(id);
-    records_.resize(std::max<std::size_t>(records_.size(), id + 1));
-    records_[id] = make_box_record(scene, user);
-  }
-  commit(device_->handle, top);
 }
 
-EmbreeScene::~EmbreeScene() = default;
+// Instances of boxes don't move: rays in them are the world's to the bit.
+void EmbreeScene::attach_boxes(const Scene& scene) {
+  for (const std::shared_ptr<Boxes>& boxes : boxes_) {
+    boxes->written.release();
+    unsigned id = 0;
+    if (placement_ == Placement::movable) {
+      if (!boxes->scene) {
+        boxes->scene = device_->make_scene();
+        attach_box_geometry(device_->handle(), boxes->scene.get(), *boxes);
+        commit(device_->handle(), boxes->scene.get());
+      }
+      id = attach_instance(device_->handle(), top_.get(), boxes->scene.get(), {});
+    } else {
+      id = attach_box_geometry(device_->handle(), top_.get(), *boxes);
+    }
+    box_records_.push_back(id);
+    add_record(id, make_box_record(scene, *boxes));
+  }
+}
 
 std::uint64_t EmbreeScene::bytes() const {
-  const std::int64_t bytes = device_->bytes;
+  const std::int64_t bytes = device_->bytes();
   return bytes > 0 ? std::uint64_t(bytes) : 0;
 }
 

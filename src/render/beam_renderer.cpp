@@ -56,8 +56,8 @@ bool needs_paths(const SceneGeometry& geometry, const PathSettings& settings,
     }
     return !knows_area_lights || lights.rectangles[e.index].visible_to_camera;
   });
-  const bool backdrop = lights.environment.kind != EnvironmentKind::constant ||
-                        max_component(lights.environment.constant) > 0;
+  const bool backdrop = lights.environment->kind != EnvironmentKind::constant ||
+                        max_component(lights.environment->constant) > 0;
   const bool emits =
       std::ranges::any_of(geometry.materials, [](const PreparedMaterial& m) { return m.emissive; });
   return other_lights || backdrop || emits || geometry.any_translucent || settings.max_depth > 1;

@@ -94,7 +94,9 @@ BevelShading eval_bevel_shader(const PreparedScene& scene, const BevelShader& sh
 }
 
 std::vector<BevelShader> make_bevel_shaders(const SceneGeometry& geometry,
-                                            const std::optional<RoundingSettings>& scene_default) {
+                                            const std::optional<RoundingSettings>& scene_default,
+                                            const SceneRounding* before) {
+  if (before != nullptr && before->shaders.empty()) return {};
   const std::vector<GeometryRecord>& records = geometry.embree.records();
   std::vector<BevelShader> shaders(records.size());
   bool any = false;
@@ -103,6 +105,14 @@ std::vector<BevelShader> make_bevel_shaders(const SceneGeometry& geometry,
     const Object& object = geometry.scene.objects[records[i].object.index];
     const std::optional<RoundingSettings>& s = object.rounding ? object.rounding : scene_default;
     if (!s || s->method != RoundMethod::shader) continue;
+    const bool stays =
+        before != nullptr && (std::holds_alternative<AutoRadius>(s->radius) ||
+                              before->sources[i].place.linear == object.world_from_object.linear);
+    if (stays && !s->shader.delta) {
+      shaders[i] = before->shaders[i];
+      any = any || shaders[i].delta > 0;
+      continue;
+    }
     const double delta =
         s->shader.delta ? *s->shader.delta : resolve_radius(geometry.scene, object, *s);
     shaders[i] = {float(delta), float(s->shader.perturb.value_or(1)), s->shader.divisions};

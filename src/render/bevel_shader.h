@@ -40,9 +40,11 @@ struct BevelShading {
 BevelShading eval_bevel_shader(const PreparedScene& scene, const BevelShader& shader,
                                const SurfaceHit& hit);
 
-// One per geometry; delta is 0 where the object has no bevel shader. Empty if none has.
+// One per geometry; delta is 0 where the object has no bevel shader. Empty if none has. `before`: of the same objects
+// in other places, whose automatic depths stay.
 std::vector<BevelShader> make_bevel_shaders(const SceneGeometry& geometry,
-                                            const std::optional<RoundingSettings>& scene_default);
+                                            const std::optional<RoundingSettings>& scene_default,
+                                            const SceneRounding* before = nullptr);
 
 // Notes the shader's Fac in the hit and puts its normal in place of the hit's shading normal, bent back to where mirror
 // directions leave the face.

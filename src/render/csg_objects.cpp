@@ -137,6 +137,26 @@ Box3f world_box(const Affine3d& m, const Box3d& box) {
   return out;
 }
 
+std::shared_ptr<CsgObject> place_csg(std::shared_ptr<const CsgCells> cells, const Scene& scene,
+                                     ObjectId id) {
+  const Affine3d object_from_world = inverse(scene.objects[id.index].world_from_object);
+  return std::make_shared<CsgObject>(
+      CsgObject{std::move(cells), id, object_from_world, transpose(object_from_world.linear), 0});
+}
+
+BoxGeometry make_boxes(const Scene& scene, const CsgObject& object) {
+  BoxGeometry geometry;
+  geometry.object = object.object;
+  geometry.user = &object;
+  geometry.intersect = intersect_cell;
+  geometry.occluded = occluded_cell;
+  for (const CsgCell& cell : object.cells->cells()) {
+    geometry.boxes.push_back(
+        world_box(scene.objects[object.object.index].world_from_object, cell.bounds));
+  }
+  return geometry;
+}
+
 }  // namespace
 
 CsgObjects make_csg_objects(const Scene& scene, int threads) {
@@ -152,26 +172,46 @@ CsgObjects make_csg_objects(const Scene& scene, int threads) {
           "object \"" + object.name + "\"", CellOptions{.threads = threads});
       out.bytes += shared->bytes();
     }
-    const Affine3d object_from_world = inverse(object.world_from_object);
-    out.objects.push_back(std::make_unique<CsgObject>(
-        CsgObject{shared, ObjectId{i}, object_from_world, transpose(object_from_world.linear), 0}));
+    out.objects.push_back(place_csg(shared, scene, ObjectId{i}));
+  }
+  return out;
+}
+
+CsgObjects move_csg_objects(const CsgObjects& before, const Scene& scene_before,
+                            const Scene& moved) {
+  CsgObjects out;
+  out.bytes = before.bytes;
+  for (const std::shared_ptr<CsgObject>& object : before.objects) {
+    const std::uint32_t i = object->object.index;
+    const bool stays =
+        scene_before.objects[i].world_from_object == moved.objects[i].world_from_object;
+    if (stays) {
+      out.objects.push_back(object);
+      continue;
+    }
+    out.objects.push_back(place_csg(object->cells, moved, object->object));
+    out.objects.back()->record = object->record;
+  }
+  out.by_record = before.by_record;
+  for (const std::shared_ptr<CsgObject>& object : out.objects) {
+    out.by_record[object->record] = object.get();
   }
   return out;
 }
 
 std::vector<BoxGeometry> make_csg_boxes(const Scene& scene, const CsgObjects& objects) {
   std::vector<BoxGeometry> boxes;
-  for (const auto& object : objects.objects) {
-    BoxGeometry geometry;
-    geometry.object = object->object;
-    geometry.user = object.get();
-    geometry.intersect = intersect_cell;
-    geometry.occluded = occluded_cell;
-    for (const CsgCell& cell : object->cells->cells()) {
-      geometry.boxes.push_back(
-          world_box(scene.objects[object->object.index].world_from_object, cell.bounds));
-    }
-    boxes.push_back(std::move(geometry));
+  for (const auto& object : objects.objects) boxes.push_back(make_boxes(scene, *object));
+  return boxes;
+}
+
+std::vector<std::optional<BoxGeometry>> make_moved_csg_boxes(const Scene& scene,
+                                                             const CsgObjects& objects,
+                                                             const CsgObjects& before) {
+  std::vector<std::optional<BoxGeometry>> boxes(objects.objects.size());
+  for (std::size_t i = 0; i < boxes.size(); ++i) {
+    if (objects.objects[i] == before.objects[i]) continue;
+    boxes[i] = make_boxes(scene, *objects.objects[i]);
   }
   return boxes;
 }

@@ -32,15 +32,22 @@ struct CsgObject {
 };
 
 struct CsgObjects {
-  std::vector<std::unique_ptr<CsgObject>> objects;  // where they are Embree's callbacks know
+  std::vector<std::shared_ptr<CsgObject>> objects;  // where they are Embree's callbacks know
   std::vector<const CsgObject*> by_record;          // null: a mesh; empty: no CSG at all
   std::uint64_t bytes = 0;
 };
 
 // Errors: Error{input} naming the object, for endless solids.
 CsgObjects make_csg_objects(const Scene& scene, int threads);
+// The same with objects in other places: those that have not moved are shared.
+CsgObjects move_csg_objects(const CsgObjects& before, const Scene& scene_before,
+                            const Scene& moved);
 // Once for each object, in their order.
 std::vector<BoxGeometry> make_csg_boxes(const Scene& scene, const CsgObjects& objects);
+// Without value where the object is that of `before`.
+std::vector<std::optional<BoxGeometry>> make_moved_csg_boxes(const Scene& scene,
+                                                             const CsgObjects& objects,
+                                                             const CsgObjects& before);
 void set_csg_records(CsgObjects& objects, const EmbreeScene& embree);
 
 // A point of a solid's surface; world space, double.

@@ -56,6 +56,10 @@ class Mesher {
   }
 
  private:
+  // Read only, so that nothing is copied.
+  [[nodiscard]] const Mesh& mesh_of(const Object& object) const {
+    return std::as_const(scene_).meshes[object.mesh.index];
+  }
   [[nodiscard]] const RoundingSettings* settings_of(const Object& object) const {
     if (object.rounding) return &*object.rounding;
     return default_ ? &*default_ : nullptr;
@@ -67,7 +71,7 @@ class Mesher {
       const Object& object = scene_.objects[i];
       const RoundingSettings* const s = settings_of(object);
       if (s == nullptr || s->method != RoundMethod::mesh) return;
-      if (object.csg || scene_.meshes[object.mesh.index].triangles.empty()) return;
+      if (object.csg || mesh_of(object).triangles.empty()) return;
       radii[i] = resolve_radius(scene_, object, *s);
     });
     std::map<std::tuple<std::uint32_t, double, RoundEdges, double, int>, std::size_t> shared;
@@ -101,7 +105,7 @@ class Mesher {
 
   void build(Task& task) const {
     const Object& object = scene_.objects[task.object];
-    const Mesh& mesh = scene_.meshes[object.mesh.index];
+    const Mesh& mesh = mesh_of(object);
     const std::string place = "object \"" + object.name + "\"";
     task.result = task.scale
                       ? make_bevel_mesh(mesh, task.options, task.subdivisions, place)

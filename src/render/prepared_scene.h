@@ -74,12 +74,17 @@ struct ObjectHit {
 class PreparedScene {
  public:
   PreparedScene(std::shared_ptr<const SceneGeometry> geometry, SceneRounding rounding);
+  PreparedScene(std::shared_ptr<const SceneGeometry> geometry,
+                std::shared_ptr<const SceneRounding> rounding);
   ~PreparedScene();
 
   [[nodiscard]] const Scene& scene() const;
   [[nodiscard]] const SceneGeometry& geometry() const { return *geometry_; }
   [[nodiscard]] std::shared_ptr<const SceneGeometry> shared_geometry() const { return geometry_; }
   [[nodiscard]] const SceneRounding& rounding() const { return rounding_; }
+  [[nodiscard]] std::shared_ptr<const SceneRounding> shared_rounding() const {
+    return shared_rounding_;
+  }
   [[nodiscard]] const PrepareStats& stats() const { return stats_; }
 
   // The closest surface in (t_min, t_max).
@@ -94,7 +99,8 @@ class PreparedScene {
 
  private:
   std::shared_ptr<const SceneGeometry> geometry_;
-  SceneRounding rounding_;
+  std::shared_ptr<const SceneRounding> shared_rounding_;
+  const SceneRounding& rounding_;
   PrepareStats stats_;
 };
 

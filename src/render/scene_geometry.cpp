@@ -76,8 +76,9 @@ std::vector<EmissiveTriangle> collect_emitters(const SceneGeometry& geometry, Em
   return emitters;
 }
 
-SceneBounds light_bounds(const Scene& scene) {
-  const Bounds bounds = world_bounds(scene);
+SceneBounds light_bounds(const std::vector<Bounds>& objects) {
+  Bounds bounds;
+  for (const Bounds& object : objects) bounds.add(object);
   if (bounds.is_empty()) {
     return {};
   }
@@ -87,17 +88,49 @@ SceneBounds light_bounds(const Scene& scene) {
 
 }  // namespace
 
-SceneGeometry::SceneGeometry(Scene described, const EmbreeSceneOptions& options)
-    : scene(std::move(described)),
-      csg(make_csg_objects(scene, options.threads)),
+PlacedGeometry::PlacedGeometry(const Scene& scene, const EmbreeSceneOptions& options)
+    : csg(make_csg_objects(scene, options.threads)),
       embree(scene, options, make_csg_boxes(scene, csg)) {
   set_csg_records(csg, embree);
-  std::transform(scene.materials.begin(), scene.materials.end(), std::back_inserter(materials),
-                 prepare_material);
+  for (const Object& object : scene.objects) bounds.push_back(world_bounds(scene, object));
+}
+
+PlacedGeometry::PlacedGeometry(const PlacedGeometry& before, const Scene& scene_before,
+                               const Scene& moved)
+    : csg(move_csg_objects(before.csg, scene_before, moved)),
+      embree(before.embree, moved, make_moved_csg_boxes(moved, csg, before.csg)),
+      bounds(before.bounds) {
+  for (std::size_t i = 0; i < bounds.size(); ++i) {
+    const Object& object = moved.objects[i];
+    if (object.world_from_object == scene_before.objects[i].world_from_object) continue;
+    bounds[i] = world_bounds(moved, object);
+  }
+}
+
+SceneGeometry::SceneGeometry(Scene described, const EmbreeSceneOptions& options)
+    : scene(std::move(described)),
+      placed(std::make_shared<const PlacedGeometry>(scene, options)),
+      csg(placed->csg),
+      embree(placed->embree) {
+  std::transform(scene.materials.read().begin(), scene.materials.read().end(),
+                 std::back_inserter(materials), prepare_material);
   any_translucent = std::any_of(materials.begin(), materials.end(),
                                 [](const PreparedMaterial& m) { return m.translucent; });
   const std::vector<EmissiveTriangle> emitters = collect_emitters(*this, emitter_index);
-  lights = make_light_set(scene.lights, *scene.environment, emitters, light_bounds(scene));
+  lights = make_light_set(scene.lights, *scene.environment, emitters, light_bounds(placed->bounds));
+}
+
+SceneGeometry::SceneGeometry(const SceneGeometry& before, Scene moved,
+                             std::shared_ptr<const PlacedGeometry> moved_placed)
+    : scene(std::move(moved)),
+      placed(std::move(moved_placed)),
+      csg(placed->csg),
+      embree(placed->embree),
+      materials(before.materials),
+      any_translucent(before.any_translucent) {
+  const std::vector<EmissiveTriangle> emitters = collect_emitters(*this, emitter_index);
+  lights = make_light_set(scene.lights, before.lights.environment, emitters,
+                          light_bounds(placed->bounds));
 }
 
 WorldTriangle instanced_triangle(const Scene& scene, const GeometryRecord& record,

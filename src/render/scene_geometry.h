@@ -2,12 +2,14 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 #include "arris/scene.h"
 #include "geometry/embree_scene.h"
 #include "render/csg_objects.h"
 #include "render/meshed_bevels.h"
+#include "scene/scene_bounds.h"
 #include "shading/lights.h"
 #include "shading/surface_material.h"
 
@@ -34,11 +36,23 @@ struct EmitterIndex {
   std::vector<Place> places;  // per emitter
 };
 
+// What rays meet. Scenes that differ in camera and lights share it.
+struct PlacedGeometry {
+  CsgObjects csg;  // its boxes are in `embree`
+  EmbreeScene embree;
+  std::vector<Bounds> bounds;  // of every object, in the world
+
+  PlacedGeometry(const Scene& scene, const EmbreeSceneOptions& options);
+  // Objects in other places. Precondition: `before` is movable.
+  PlacedGeometry(const PlacedGeometry& before, const Scene& scene_before, const Scene& moved);
+};
+
 struct SceneGeometry {
   Scene scene;          // camera and environment filled in, meshed bevels in their place
   MeshedBevels meshed;  // what they are
-  CsgObjects csg;       // its boxes are in `embree`
-  EmbreeScene embree;
+  std::shared_ptr<const PlacedGeometry> placed;
+  const CsgObjects& csg;  // of `placed`, as is the next
+  const EmbreeScene& embree;
   std::vector<PreparedMaterial> materials;
   EmitterIndex emitter_index;
   LightSet lights;
@@ -47,6 +61,11 @@ struct SceneGeometry {
 
   // Precondition: a valid scene with camera and environment.
   SceneGeometry(Scene described, const EmbreeSceneOptions& options);
+  // The same materials and environment, other camera, transforms and lights.
+  SceneGeometry(const SceneGeometry& before, Scene moved,
+                std::shared_ptr<const PlacedGeometry> moved_placed);
+  SceneGeometry(const SceneGeometry&) = delete;
+  SceneGeometry& operator=(const SceneGeometry&) = delete;
 };
 
 inline MaterialId material_of(const GeometryRecord& record, std::uint32_t triangle) {

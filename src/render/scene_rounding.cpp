@@ -28,29 +28,43 @@ std::string place_of(const Object& object) {
   return "object \"" + object.name + "\"";
 }
 
+// The scale of an instance by a similarity. In float: turning it changes nothing.
+std::optional<double> instance_scale(const GeometryRecord& record, const Mat3d& linear) {
+  if (!record.instanced) return std::nullopt;
+  const std::optional<double> scale = similarity_scale(linear);
+  return scale ? std::optional(double(float(*scale))) : std::nullopt;
+}
+
 // One Rounding to be built, and the geometries that use it.
 struct Task {
   std::uint32_t record = 0;  // the first geometry that needs it
   RoundingOptions options;
-  bool in_object_space = false;
+  std::optional<double> scale;  // in object space, by a similarity
   std::vector<std::uint32_t> users;
-  std::shared_ptr<const Rounding> result;
+  std::shared_ptr<const Rounding> result;  // made already, where it is shared
 };
 
 class Maker {
  public:
   Maker(const SceneGeometry& geometry, const std::optional<RoundingSettings>& scene_default,
-        const SceneRoundingOptions& options)
-      : geometry_(geometry), scene_(geometry.scene), default_(scene_default), options_(options) {}
+        const SceneRoundingOptions& options, const SceneRounding* before)
+      : geometry_(geometry),
+        scene_(geometry.scene),
+        default_(scene_default),
+        options_(options),
+        before_(before) {}
 
   SceneRounding make() {
     const auto start = std::chrono::steady_clock::now();
+    out_.scene_default = default_;
     out_.geometries.resize(geometry_.embree.records().size());
+    out_.sources.resize(out_.geometries.size());
     collect_tasks();
-    parallel_for(tasks_.size(), {.grain = 1, .threads = options_.threads},
-                 [&](std::size_t i) { build(tasks_[i]); });
+    parallel_for(tasks_.size(), {.grain = 1, .threads = options_.threads}, [&](std::size_t i) {
+      if (!tasks_[i].result) build(tasks_[i]);
+    });
     for (Task& task : tasks_) attach(task);
-    if (out_.any) find_void_neighbors(geometry_, out_, options_.threads);
+    if (out_.any) find_void_neighbors(geometry_, out_, options_.threads, before_);
     out_.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     return std::move(out_);
   }
@@ -59,36 +73,65 @@ class Maker {
   [[nodiscard]] const GeometryRecord& record(std::uint32_t index) const {
     return geometry_.embree.records()[index];
   }
+  [[nodiscard]] const Object& object_of(std::uint32_t index) const {
+    return scene_.objects[record(index).object.index];
+  }
+  [[nodiscard]] const std::optional<RoundingSettings>& settings_of(std::uint32_t index) const {
+    const Object& object = object_of(index);
+    return object.rounding ? object.rounding : default_;
+  }
+
+  // What this geometry had before, if it still fits.
+  [[nodiscard]] const RoundingSource* find_source(std::uint32_t i) const {
+    if (before_ == nullptr) return nullptr;
+    const RoundingSource& source = before_->sources[i];
+    const RoundingSource& now = out_.sources[i];
+    return (now.scale ? now.scale == source.scale : now.place.linear == source.place.linear)
+               ? &source
+               : nullptr;
+  }
+
+  // World units.
+  [[nodiscard]] double radius_of(std::uint32_t i) const {
+    const std::optional<RoundingSettings>& s = settings_of(i);
+    if (!s || s->method != RoundMethod::exact) return 0;
+    if (const RoundingSource* source = find_source(i)) return source->radius;
+    if (before_ != nullptr && std::holds_alternative<AutoRadius>(s->radius)) {
+      return before_->sources[i].radius;
+    }
+    return resolve_radius(scene_, object_of(i), *s, out_.sources[i].scale);
+  }
 
   void collect_tasks() {
-    std::vector<double> radii(geometry_.embree.records().size(), 0);
+    std::vector<double> radii(out_.sources.size(), 0);
     parallel_for(radii.size(), {.grain = 8, .threads = options_.threads}, [&](std::size_t i) {
-      const GeometryRecord& r = record(std::uint32_t(i));
-      if (r.triangles == nullptr) return;
-      const Object& object = scene_.objects[r.object.index];
-      const std::optional<RoundingSettings>& s = object.rounding ? object.rounding : default_;
-      if (s && s->method == RoundMethod::exact) radii[i] = resolve_radius(scene_, object, *s);
+      const auto index = std::uint32_t(i);
+      out_.sources[i].place = object_of(index).world_from_object;
+      if (record(index).triangles == nullptr) return;
+      RoundingSource& source = out_.sources[i];
+      source.scale = instance_scale(record(index), source.place.linear);
+      source.radius = radii[i] = radius_of(index);
     });
     std::map<std::tuple<std::uint32_t, double, int, double>, std::size_t> shared;
     for (std::uint32_t i = 0; i < radii.size(); ++i) {
       if (!(radii[i] > 0)) continue;
-      const GeometryRecord& r = record(i);
-      const Object& object = scene_.objects[r.object.index];
-      const RoundingSettings& settings = object.rounding ? *object.rounding : *default_;
+      const RoundingSettings& settings = *settings_of(i);
       Task task;
       task.record = i;
       task.options = {radii[i], settings.edges, settings.min_angle, options_.detection,
                       std::holds_alternative<AutoRadius>(settings.radius) ? TooLarge::leave_sharp
                                                                           : TooLarge::error};
-      const std::optional<double> scale = similarity_scale(object.world_from_object.linear);
-      task.in_object_space = r.instanced && scale;
-      if (task.in_object_space) {
-        task.options.radius /= *scale;
-        const auto key =
-            std::tuple(r.mesh.index, task.options.radius, int(settings.edges), settings.min_angle);
+      if (const RoundingSource* source = find_source(i)) task.result = source->rounding;
+      task.scale = out_.sources[i].scale;
+      if (task.scale) {
+        task.options.radius /= *task.scale;
+        const auto key = std::tuple(record(i).mesh.index, task.options.radius, int(settings.edges),
+                                    settings.min_angle);
         const auto [at, is_new] = shared.try_emplace(key, tasks_.size());
         if (!is_new) {
-          tasks_[at->second].users.push_back(i);
+          Task& same = tasks_[at->second];
+          same.users.push_back(i);
+          if (!same.result) same.result = task.result;
           continue;
         }
       }
@@ -104,7 +147,7 @@ class Maker {
     const std::span<const Triangle> triangles(r.triangles, r.triangle_count);
     std::vector<Vec3f> own;
     std::span<const Vec3f> positions(r.positions, mesh.positions.size());
-    if (r.instanced && !task.in_object_space) {
+    if (r.instanced && !task.scale) {
       own = transformed_positions(mesh, {object.world_from_object.linear, {}});
       positions = own;
     }
@@ -120,24 +163,25 @@ class Maker {
       const GeometryRecord& r = record(i);
       const Object& object = scene_.objects[r.object.index];
       RoundedGeometry& g = out_.geometries[i];
+      out_.sources[i].rounding = task.result;
+      out_.sources[i].options = task.options;
       g.rounding = task.result.get();
       if (!task.result->data().band_begin.empty()) {
         g.band_begin = task.result->data().band_begin.data();
         g.bands = task.result->data().bands.data();
       }
       g.any_turned = std::ranges::any_of(task.result->data().solids, &Solid::turned);
-      double scale = 1;
-      if (task.in_object_space) {
+      if (task.scale) {
         // A similarity's own linear part turns normals, mirrored or not.
         set_frame(g, {inverse(object.world_from_object), object.world_from_object.linear});
-        scale = *similarity_scale(object.world_from_object.linear);
       } else if (r.instanced) {
         set_frame(g, {{{}, -object.world_from_object.translation}, {}});
       }
       out_.edges += report.rounded_edges;
       out_.corners += report.rounded_corners;
-      out_.summaries.push_back({object.name, r.object.index, task.options.radius * scale,
-                                report.rounded_edges, report.rounded_corners, report.notes});
+      out_.summaries.push_back({object.name, r.object.index,
+                                task.options.radius * task.scale.value_or(1), report.rounded_edges,
+                                report.rounded_corners, report.notes});
     }
     out_.roundings.push_back(std::move(task.result));
   }
@@ -151,6 +195,7 @@ class Maker {
   const Scene& scene_;
   const std::optional<RoundingSettings>& default_;
   SceneRoundingOptions options_;
+  const SceneRounding* before_;
   SceneRounding out_;
   std::vector<Task> tasks_;
 };
@@ -165,24 +210,30 @@ Vec3d center_of(const Mesh& mesh, const Affine3d& m) {
   return (low + high) * 0.5;
 }
 
-RadiusLimits limits_of(const Mesh& mesh, const Object& object, double min_angle) {
-  const std::vector<Vec3f> positions = transformed_positions(mesh, object.world_from_object);
-  return find_radius_limits({positions, mesh.triangles}, min_angle, place_of(object));
+// Lengths in world units. In object space, if there is a scale from it: so they don't depend on how it is turned.
+RadiusLimits limits_of(const Mesh& mesh, const Object& object, double min_angle,
+                       std::optional<double> scale) {
+  if (!scale) {
+    const std::vector<Vec3f> positions = transformed_positions(mesh, object.world_from_object);
+    return find_radius_limits({positions, mesh.triangles}, min_angle, place_of(object));
+  }
+  RadiusLimits limits =
+      find_radius_limits({mesh.positions, mesh.triangles}, min_angle, place_of(object));
+  if (limits.smallest_inradius) *limits.smallest_inradius *= *scale;
+  if (limits.typical_half_width) *limits.typical_half_width *= *scale;
+  return limits;
 }
 
-double percent_radius(const Mesh& mesh, const Object& object, const RoundingSettings& settings,
-                      double percent) {
-  const RadiusLimits limits = limits_of(mesh, object, settings.min_angle);
+double percent_radius(const RadiusLimits& limits, double percent) {
   if (limits.smallest_inradius) return *limits.smallest_inradius * percent / 100;
   return limits.typical_half_width.value_or(0) * percent / 100;  // 0: no edge to round
 }
 
-double auto_radius(const Scene& scene, const Mesh& mesh, const Object& object,
-                   const RoundingSettings& settings) {
+double auto_radius(const Scene& scene, const Object& object, const RadiusLimits& limits) {
+  if (!limits.typical_half_width) return 0;  // no edge to round
+  const Mesh& mesh = scene.meshes[object.mesh.index];
   const double readable =
       readable_radius(*scene.camera, scene.image, center_of(mesh, object.world_from_object));
-  const RadiusLimits limits = limits_of(mesh, object, settings.min_angle);
-  if (!limits.typical_half_width) return 0;  // no edge to round
   return std::min(readable, kAutoPartOfHalfWidth * *limits.typical_half_width);
 }
 
@@ -198,20 +249,23 @@ std::optional<double> similarity_scale(const Mat3d& m) {
   return same && square ? std::optional(s) : std::nullopt;
 }
 
-double resolve_radius(const Scene& scene, const Object& object, const RoundingSettings& settings) {
+double resolve_radius(const Scene& scene, const Object& object, const RoundingSettings& settings,
+                      std::optional<double> scale) {
   if (settings.method == RoundMethod::none) return 0;
-  const Mesh& mesh = scene.meshes[object.mesh.index];
-  if (const auto* percent = std::get_if<PercentOfInradius>(&settings.radius)) {
-    return percent_radius(mesh, object, settings, percent->percent);
-  }
   if (const auto* value = std::get_if<double>(&settings.radius)) return *value;
-  return auto_radius(scene, mesh, object, settings);
+  const RadiusLimits limits =
+      limits_of(scene.meshes[object.mesh.index], object, settings.min_angle, scale);
+  if (const auto* percent = std::get_if<PercentOfInradius>(&settings.radius)) {
+    return percent_radius(limits, percent->percent);
+  }
+  return auto_radius(scene, object, limits);
 }
 
 SceneRounding make_scene_rounding(const SceneGeometry& geometry,
                                   const std::optional<RoundingSettings>& scene_default,
-                                  const SceneRoundingOptions& options) {
-  return Maker(geometry, scene_default, options).make();
+                                  const SceneRoundingOptions& options,
+                                  const SceneRounding* before) {
+  return Maker(geometry, scene_default, options, before).make();
 }
 
 }  // namespace arris

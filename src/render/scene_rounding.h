@@ -68,11 +68,28 @@ struct BevelShader {
   int divisions = 3;
 };
 
+// What a geometry's rounding was made from: another place that leaves this as it is can share it.
+struct RoundingSource {
+  std::shared_ptr<const Rounding> rounding;  // null: not rounded
+  RoundingOptions options;                   // of `rounding`
+  double radius = 0;                         // in the world
+  std::optional<double> scale;  // of an instance by a similarity, in object space; empty: …
+  Affine3d place;               // … made for this linear part
+};
+
+// Of each solid of a geometry, or of all of it, points whose hull holds it; in the mesh's space.
+using SolidPoints = std::vector<std::vector<Vec3d>>;
+
 struct SceneRounding {
+  std::optional<RoundingSettings> scene_default;
+  std::vector<RoundingSource> sources;  // per geometry
   std::vector<RoundedGeometry> geometries;
   std::vector<std::shared_ptr<const Rounding>> roundings;
   std::vector<std::unique_ptr<const RoundingFrame>> frames;
   std::vector<std::vector<VoidNeighbors>> neighbors;  // per geometry; empty: none
+  // What they were found from, per geometry; empty where nothing is rounded.
+  std::vector<std::shared_ptr<const SolidPoints>> points;
+  std::vector<std::vector<std::uint32_t>> near;  // geometries whose boxes come near its voids
   bool any = false;
   std::vector<BevelShader> shaders;  // by geometry; empty if none has one
   // What was built, for PrepareStats.
@@ -86,14 +103,18 @@ struct SceneRoundingOptions {
   Detection detection = Detection::face_index;
 };
 
+// With `before`, of the same objects in other places: what does not change is shared, and automatic radii stay.
 SceneRounding make_scene_rounding(const SceneGeometry& geometry,
                                   const std::optional<RoundingSettings>& scene_default,
-                                  const SceneRoundingOptions& options);
+                                  const SceneRoundingOptions& options,
+                                  const SceneRounding* before = nullptr);
 
 // Length of the columns if they are orthogonal and of one length.
 std::optional<double> similarity_scale(const Mat3d& m);
 
-// The world radius that the settings mean for one object, 0 if none.
-double resolve_radius(const Scene& scene, const Object& object, const RoundingSettings& settings);
+// The world radius that the settings mean for one object, 0 if none. `scale` of a similarity, if the object is to be
+// measured in its own space.
+double resolve_radius(const Scene& scene, const Object& object, const RoundingSettings& settings,
+                      std::optional<double> scale = std::nullopt);
 
 }  // namespace arris

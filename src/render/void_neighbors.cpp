@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <map>
 #include <span>
 #include <tuple>
+#include <utility>
 
 #include "base/parallel_for.h"
 #include "csg/csg_cells.h"
@@ -60,16 +62,30 @@ VoidNeighbors neighbors_at(double distance, double touching, double margin) {
 
 class NeighborFinder {
  public:
-  NeighborFinder(const SceneGeometry& geometry, SceneRounding& rounding)
+  NeighborFinder(const SceneGeometry& geometry, SceneRounding& rounding,
+                 const SceneRounding* before)
       : geometry_(geometry), out_(rounding) {
     out_.neighbors.resize(out_.geometries.size());
+    out_.points.resize(out_.geometries.size());
+    out_.near.resize(out_.geometries.size());
+    if (before != nullptr && !before->points.empty()) before_ = before;
   }
 
   void find(int threads) {
     for (std::uint32_t i = 0; i < out_.geometries.size(); ++i) collect_bodies(i);
     const std::vector<std::vector<std::uint32_t>> near = find_pairs();
+    for (std::size_t i = 0; i < bodies_.size(); ++i) {
+      for (const std::uint32_t j : near[i]) {
+        out_.near[bodies_[i].geometry].push_back(bodies_[j].geometry);
+      }
+    }
+    const std::vector<bool> stays = find_unchanged();
     for (const Body& body : bodies_) make_room(body);
+    for (std::size_t i = 0; i < stays.size(); ++i) {
+      if (stays[i]) out_.neighbors[i] = before_->neighbors[i];
+    }
     parallel_for(bodies_.size(), {.grain = 16, .threads = threads}, [&](std::size_t i) {
+      if (stays[bodies_[i].geometry]) return;
       for (const std::uint32_t j : near[i]) look(bodies_[i], bodies_[j]);
     });
     for (std::size_t i = 0; i < out_.geometries.size(); ++i) {
@@ -80,39 +96,79 @@ class NeighborFinder {
   }
 
  private:
-  void collect_bodies(std::uint32_t geometry) {
-    const GeometryRecord& record = geometry_.embree.records()[geometry];
-    if (record.triangles == nullptr) return collect_csg(geometry);
-    const Rounding* rounding = out_.geometries[geometry].rounding;
-    const std::size_t first = bodies_.size();
-    bodies_.resize(first + (rounding != nullptr ? rounding->data().solids.size() : 1));
-    for (std::size_t i = first; i < bodies_.size(); ++i) {
-      bodies_[i].geometry = geometry;
-      if (rounding == nullptr) continue;
-      bodies_[i].solid = std::uint32_t(i - first);
-      const RoundingFrame* frame = out_.geometries[geometry].frame;
-      if (frame != nullptr) bodies_[i].scale = 1 / length(frame->rounding_from_world.linear.x);
-      bodies_[i].margin = kVoidMargin * rounding->data().solids[i - first].size * bodies_[i].scale;
+  // Geometries that stay where they were with their roundings, and whose neighbours do.
+  [[nodiscard]] std::vector<bool> find_unchanged() const {
+    std::vector<bool> unchanged(out_.geometries.size(), false);
+    if (before_ == nullptr) return unchanged;
+    const auto stays = [&](std::uint32_t i) {
+      return out_.sources[i].rounding == before_->sources[i].rounding &&
+             out_.sources[i].place == before_->sources[i].place;
+    };
+    for (std::uint32_t i = 0; i < unchanged.size(); ++i) {
+      unchanged[i] = stays(i) && std::ranges::all_of(out_.near[i], stays) &&
+                     std::ranges::all_of(before_->near[i], stays);
     }
+    return unchanged;
+  }
+
+  // The points of a geometry's solids are the same wherever it is. Solids of many are taken for their box.
+  [[nodiscard]] std::shared_ptr<const SolidPoints> find_points(std::uint32_t geometry) {
+    const Rounding* rounding = out_.geometries[geometry].rounding;
+    if (before_ != nullptr && before_->sources[geometry].rounding.get() == rounding) {
+      return before_->points[geometry];
+    }
+    const GeometryRecord& record = geometry_.embree.records()[geometry];
+    std::shared_ptr<const SolidPoints>& shared = shared_[{record.positions, rounding}];
+    if (!shared) shared = make_points(record, rounding);
+    return shared;
+  }
+
+  [[nodiscard]] std::shared_ptr<const SolidPoints> make_points(const GeometryRecord& record,
+                                                               const Rounding* rounding) {
+    SolidPoints points(rounding != nullptr ? rounding->data().solids.size() : 1);
+    std::vector<Body> boxes(points.size());
     seen_.assign(geometry_.scene.meshes[record.mesh.index].positions.size(), kNone);
     for (std::uint32_t t = 0; t < record.triangle_count; ++t) {
       const std::uint32_t solid = rounding != nullptr ? rounding->solid_of(t) : 0;
       if (solid == kNone) continue;
-      Body& body = bodies_[first + solid];
-      const WorldTriangle w = world_triangle(geometry_.scene, record, t);
-      const std::array<Vec3f, 3> corners{w.p0, w.p1, w.p2};
-      for (std::size_t k = 0; k < 3; ++k) {
-        const std::uint32_t vertex = record.triangles[t][k];
+      for (const std::uint32_t vertex : record.triangles[t]) {
         if (seen_[vertex] == solid) continue;
         seen_[vertex] = solid;
-        body.include(Vec3d(corners[k]));
-        if (body.points.size() <= kMaxVertices) body.points.push_back(Vec3d(corners[k]));
+        const Vec3d p(record.positions[vertex]);
+        boxes[solid].include(p);
+        if (points[solid].size() <= kMaxVertices) points[solid].push_back(p);
       }
     }
-    for (std::size_t i = first; i < bodies_.size(); ++i) {
-      if (bodies_[i].points.size() <= kMaxVertices) continue;
-      const auto corners = corners_of(bodies_[i]);
-      bodies_[i].points.assign(corners.begin(), corners.end());
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      if (points[i].size() <= kMaxVertices) continue;
+      const auto corners = corners_of(boxes[i]);
+      points[i].assign(corners.begin(), corners.end());
+    }
+    return std::make_shared<const SolidPoints>(std::move(points));
+  }
+
+  void collect_bodies(std::uint32_t geometry) {
+    const GeometryRecord& record = geometry_.embree.records()[geometry];
+    if (record.triangles == nullptr) return collect_csg(geometry);
+    const Rounding* rounding = out_.geometries[geometry].rounding;
+    out_.points[geometry] = find_points(geometry);
+    std::uint32_t solid = 0;
+    for (const std::vector<Vec3d>& points : *out_.points[geometry]) {
+      Body& body = bodies_.emplace_back();
+      body.geometry = geometry;
+      for (const Vec3d& p : points) {
+        body.points.push_back(
+            record.instanced
+                ? Vec3d(Vec3f(transform_point(
+                      geometry_.scene.objects[record.object.index].world_from_object, p)))
+                : p);
+        body.include(body.points.back());
+      }
+      if (rounding == nullptr) continue;
+      const RoundingFrame* frame = out_.geometries[geometry].frame;
+      if (frame != nullptr) body.scale = 1 / length(frame->rounding_from_world.linear.x);
+      body.margin = kVoidMargin * rounding->data().solids[solid].size * body.scale;
+      body.solid = solid++;
     }
   }
 
@@ -300,15 +356,18 @@ class NeighborFinder {
 
   const SceneGeometry& geometry_;
   SceneRounding& out_;
+  const SceneRounding* before_ = nullptr;
   std::vector<Body> bodies_;
+  std::map<std::pair<const Vec3f*, const Rounding*>, std::shared_ptr<const SolidPoints>> shared_;
   std::vector<std::uint32_t>
       seen_;  // per vertex of one mesh: the last solid that it was counted for
 };
 
 }  // namespace
 
-void find_void_neighbors(const SceneGeometry& geometry, SceneRounding& rounding, int threads) {
-  NeighborFinder(geometry, rounding).find(threads);
+void find_void_neighbors(const SceneGeometry& geometry, SceneRounding& rounding, int threads,
+                         const SceneRounding* before) {
+  NeighborFinder(geometry, rounding, before).find(threads);
 }
 
 }  // namespace arris

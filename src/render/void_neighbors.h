@@ -11,6 +11,8 @@
 
 namespace arris {
 
-void find_void_neighbors(const SceneGeometry& geometry, SceneRounding& rounding, int threads);
+// With `before`, of the same objects in other places, only voids that a moved solid was or is near are looked at.
+void find_void_neighbors(const SceneGeometry& geometry, SceneRounding& rounding, int threads,
+                         const SceneRounding* before = nullptr);
 
 }  // namespace arris

@@ -62,13 +62,13 @@ class LightSetBuilder {
                               t.radiance, has_area ? 2.0F / twice_area : 0.0F, t.both_sides});
   }
 
-  void add_environment(const Environment& environment) {
-    set_.environment = make_environment_light(environment);
-    if (set_.environment.kind == EnvironmentKind::map) {
-      add(EmitterKind::environment, 0, disc_area_ * set_.environment.map.power);
+  void add_environment(std::shared_ptr<const EnvironmentLight> environment) {
+    set_.environment = std::move(environment);
+    if (set_.environment->kind == EnvironmentKind::map) {
+      add(EmitterKind::environment, 0, disc_area_ * set_.environment->map.power);
     }
-    if (!set_.environment.suns.empty()) {
-      const SunDisc& sun = set_.environment.suns.front();
+    if (!set_.environment->suns.empty()) {
+      const SunDisc& sun = set_.environment->suns.front();
       add(EmitterKind::sun, 0, disc_area_ * sun.solid_angle * mean(sun.radiance));
     }
   }
@@ -137,6 +137,14 @@ class LightSetBuilder {
 
 LightSet make_light_set(std::span<const Light> lights, const Environment& environment,
                         std::span<const EmissiveTriangle> triangles, const SceneBounds& bounds) {
+  return make_light_set(
+      lights, std::make_shared<const EnvironmentLight>(make_environment_light(environment)),
+      triangles, bounds);
+}
+
+LightSet make_light_set(std::span<const Light> lights,
+                        std::shared_ptr<const EnvironmentLight> environment,
+                        std::span<const EmissiveTriangle> triangles, const SceneBounds& bounds) {
   LightSetBuilder builder(bounds);
   for (const Light& light : lights) {
     std::visit(builder, light);
@@ -144,7 +152,7 @@ LightSet make_light_set(std::span<const Light> lights, const Environment& enviro
   for (const EmissiveTriangle& triangle : triangles) {
     builder.add_triangle(triangle);
   }
-  builder.add_environment(environment);
+  builder.add_environment(std::move(environment));
   return builder.finish();
 }
 

@@ -19,6 +19,7 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <memory>
 #include <optional>
 #include <span>
 #include <vector>
@@ -88,12 +89,16 @@ struct LightSet {
   std::vector<RectangleEmitter> rectangles;
   std::vector<TriangleEmitter> triangles;
   std::vector<float> rectangle_probability, triangle_probability;  // of selection
-  EnvironmentLight environment;
+  std::shared_ptr<const EnvironmentLight> environment;
   float environment_probability = 0;  // of selection; 0 for constant ones
   float sun_probability = 0;
 };
 
 LightSet make_light_set(std::span<const Light> lights, const Environment& environment,
+                        std::span<const EmissiveTriangle> triangles, const SceneBounds& bounds);
+// With the environment of another set.
+LightSet make_light_set(std::span<const Light> lights,
+                        std::shared_ptr<const EnvironmentLight> environment,
                         std::span<const EmissiveTriangle> triangles, const SceneBounds& bounds);
 
 struct LightSample {
@@ -190,10 +195,10 @@ inline LightSample sample_triangle(const TriangleEmitter& light, Vec3f point, Ve
 
 // Map and sun are one integrand, drawn by a mixture: both count wherever they overlap.
 inline EnvironmentValue eval_map_and_sun(const LightSet& lights, Vec3f wi, MapPoint at) {
-  const EnvironmentMap& map = lights.environment.map;
+  const EnvironmentMap& map = lights.environment->map;
   EnvironmentValue value{eval_environment_map(map, map.radiance, at),
                          lights.environment_probability * pdf_environment_map(map, at)};
-  for (const SunDisc& sun : lights.environment.suns) {
+  for (const SunDisc& sun : lights.environment->suns) {
     if (is_in_sun(sun, wi)) {
       value.radiance += sun.radiance;
       value.pdf += lights.sun_probability / sun.solid_angle;
@@ -233,12 +238,12 @@ inline LightSample sample_emitter(const LightSet& lights, Emitter emitter, Vec3f
     case EmitterKind::triangle:
       return sample_triangle(lights.triangles[emitter.index], point, u);
     case EmitterKind::environment: {
-      const EnvironmentMapSample sample = sample_environment_map(lights.environment.map, u);
+      const EnvironmentMapSample sample = sample_environment_map(lights.environment->map, u);
       return sample_far(lights, sample.wi, sample.at);
     }
     case EmitterKind::sun: {
-      const Vec3f wi = sample_sun(lights.environment.suns.front(), u);
-      return sample_far(lights, wi, map_point(lights.environment.map, wi));
+      const Vec3f wi = sample_sun(lights.environment->suns.front(), u);
+      return sample_far(lights, wi, map_point(lights.environment->map, wi));
     }
   }
   return {};
@@ -266,7 +271,7 @@ inline std::optional<LightSample> sample_light(const LightSet& lights, Vec3f poi
 
 // What a ray that leaves the scene sees, sun included, and with which density it would have been drawn.
 inline EnvironmentValue eval_environment_with_pdf(const LightSet& lights, Vec3f wi) {
-  const EnvironmentLight& environment = lights.environment;
+  const EnvironmentLight& environment = *lights.environment;
   return environment.kind == EnvironmentKind::constant
              ? EnvironmentValue{environment.constant, 0}
              : eval_map_and_sun(lights, wi, map_point(environment.map, wi));
@@ -282,7 +287,7 @@ inline float pdf_environment(const LightSet& lights, Vec3f wi) {
 
 // What the camera sees behind the scene: the studio without its lamps, else the environment.
 inline Rgb eval_backdrop(const LightSet& lights, Vec3f wi) {
-  const EnvironmentLight& environment = lights.environment;
+  const EnvironmentLight& environment = *lights.environment;
   return environment.backdrop.empty() ? eval_environment(lights, wi)
                                       : eval_environment_map(environment.map, environment.backdrop,
                                                              map_point(environment.map, wi));

@@ -20,7 +20,7 @@ HdrEnvironment marked_map(int column, int row) {
   HdrEnvironment map;
   map.width_px = 16;
   map.height_px = 8;
-  map.radiance.assign(16 * 8, Rgb(0.0F));
+  map.radiance.edit().assign(16 * 8, Rgb(0.0F));
   map.radiance[std::size_t(row * 16 + column)] = Rgb(1.0F);
   return map;
 }
@@ -83,8 +83,8 @@ TEST(Environment, black_map_is_no_emitter) {
 
 TEST(Environment, sun_samples_fill_its_disc_uniformly) {
   const LightSet lights = environment_only(SkyEnvironment{});
-  ASSERT_EQ(lights.environment.suns.size(), 1U);
-  const SunDisc& sun = lights.environment.suns.front();
+  ASSERT_EQ(lights.environment->suns.size(), 1U);
+  const SunDisc& sun = lights.environment->suns.front();
   std::mt19937 random(4);
   constexpr int kSamples = 20000;
   constexpr int kRings = 10;
@@ -107,12 +107,12 @@ TEST(Environment, sun_samples_fill_its_disc_uniformly) {
 TEST(Environment, sun_is_seen_as_bright_as_it_shines) {
   const SkyEnvironment sky{.sun_direction = {0, 0, 2}};
   const LightSet lights = environment_only(sky);
-  const SunDisc& sun = lights.environment.suns.front();
+  const SunDisc& sun = lights.environment->suns.front();
   const float in_sun = eval_environment(lights, {0, 0, 1}).x;
   const float beside = eval_environment(lights, sphere_direction(std::cos(radians(0.4)), 1)).x;
   EXPECT_NEAR(in_sun - beside, sun.radiance.x, 0.01F * sun.radiance.x);
   EXPECT_GT(pdf_environment(lights, {0, 0, 1}), 1000.0F);
-  EXPECT_TRUE(environment_only(SkyEnvironment{.sun = false}).environment.suns.empty());
+  EXPECT_TRUE(environment_only(SkyEnvironment{.sun = false}).environment->suns.empty());
 }
 
 TEST(Environment, sky_is_blue_above_and_grey_below) {
@@ -129,10 +129,10 @@ TEST(Environment, sky_survives_any_sun_and_turbidity) {
     for (const double turbidity : {1.0, 2.0, 6.0, 30.0}) {
       const LightSet lights = environment_only(SkyEnvironment{
           .sun_direction = {std::cos(elevation), 0, std::sin(elevation)}, .turbidity = turbidity});
-      for (const Rgb& c : lights.environment.map.radiance) {
+      for (const Rgb& c : lights.environment->map.radiance) {
         ASSERT_TRUE(is_finite(c) && c.x >= 0 && c.y >= 0 && c.z >= 0) << elevation;
       }
-      EXPECT_EQ(lights.environment.suns.empty(), elevation <= 0) << elevation;
+      EXPECT_EQ(lights.environment->suns.empty(), elevation <= 0) << elevation;
     }
   }
 }

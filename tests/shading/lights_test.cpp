@@ -35,7 +35,7 @@ HdrEnvironment spotted_map() {
   HdrEnvironment map;
   map.width_px = 24;
   map.height_px = 12;
-  map.radiance.assign(24 * 12, Rgb(0.0F));
+  map.radiance.edit().assign(24 * 12, Rgb(0.0F));
   for (std::size_t i = 0; i < 24 * 6; ++i) {
     map.radiance[i] = Rgb(0.1F + float(i % 24) / 24.0F);
   }
