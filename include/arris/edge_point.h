@@ -75,9 +75,19 @@ class EdgePointEngine {
   ~EdgePointEngine();
 
   void set_camera(const Camera& camera);
+  // Changes show in the first frame for which they are prepared: the next one if `synchronous`, else as soon as a
+  // thread of their own is done with them. Scenes that were prepared with Placement::movable are quick to change.
+  // next_frame() throws Error{input} for an object or light that is not there, and what does not fit.
+  void move_object(std::uint32_t object, const Affine3d& world_from_object);
+  void set_light(std::uint32_t light, const Light& value);
+  // Of all objects without settings of their own.
+  void set_rounding(const RoundingSettings& settings);
   // The same objects, some of them elsewhere, with other lights or roundings: what prepare_moved() and
   // prepare_again() make of the scene before.
   void set_scene(std::shared_ptr<const PreparedScene> scene);
+
+  // The scene of the last frame.
+  [[nodiscard]] const std::shared_ptr<const PreparedScene>& scene() const;
 
   // The frame of the camera and scene as they are now; valid until the next call.
   const Image& next_frame();

@@ -75,6 +75,10 @@ struct Crossings {
   }
 };
 
+inline std::size_t pixel_count(int width, int height) {
+  return std::size_t(unsigned(width)) * unsigned(height);
+}
+
 struct EdgePointImage {
   int width_px = 0, height_px = 0;
   Crossings crossings;
@@ -89,7 +93,7 @@ struct EdgePointImage {
       : width_px(width),
         height_px(height),
         crossings(width, height),
-        codes(std::size_t(width) * std::size_t(height)),
+        codes(pixel_count(width, height)),
         points(codes.size()),
         corners(width, height),
         samples(width, height),

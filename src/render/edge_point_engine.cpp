@@ -12,6 +12,7 @@
 #include "edgepoint/frame_maker.h"
 #include "edgepoint/sample_plan.h"
 #include "render/edge_objects.h"
+#include "render/scene_updater.h"
 #include "render/shade_plan.h"
 #include "render/shade_workers.h"
 #include "render/shadow_finder.h"
@@ -56,6 +57,7 @@ class EdgePointEngine::Impl {
         image_(scene_->scene().image),
         camera_(*scene_->scene().camera),
         objects_(*scene_, settings.threads),
+        updater_(settings.synchronous ? UpdateMode::at_once : UpdateMode::beside, settings.threads),
         lights_(std::make_shared<const std::vector<ShadowLight>>(shadow_lights(*scene_))),
         cache_(std::size_t(std::ceil(kCachePerPixel * pixel_count()))),
         maker_(image_.width_px, image_.height_px),
@@ -72,10 +74,15 @@ class EdgePointEngine::Impl {
   }
 
   void set_scene(std::shared_ptr<const PreparedScene> scene);
+  [[nodiscard]] SceneChanges& changes() { return updater_.changes(); }
+  [[nodiscard]] const std::shared_ptr<const PreparedScene>& scene() const { return scene_; }
 
   const Image& next_frame() {
     if (workers_) workers_->set_paused(true);
     stats_ = {};
+    if (std::shared_ptr<const PreparedScene> changed = updater_.poll(scene_)) {
+      set_scene(std::move(changed));
+    }
     const CameraRays rays = make_camera_rays(camera_, image_);
     if (workers_) {
       collect();
@@ -166,7 +173,7 @@ class EdgePointEngine::Impl {
 
   // Pixels that have what they need of points want paths.
   void add_still_wishes() {
-    std::vector<std::uint8_t> wishes(wanted_.size());
+    std::vector<std::uint8_t> wishes(film_size());
     film_.fill_wanted(wishes, settings_.threads);
     for (std::size_t i = 0; i < wanted_.size(); ++i) {
       if (wanted_[i] < kUrgent) wanted_[i] = wishes[i];
@@ -220,6 +227,7 @@ class EdgePointEngine::Impl {
   ImageSettings image_;
   Camera camera_;
   EdgeObjects objects_;
+  SceneUpdater updater_;
   ShadowFinder shadows_;
   std::shared_ptr<const std::vector<ShadowLight>> lights_;
   PointCache cache_;
@@ -300,6 +308,18 @@ EdgePointEngine::~EdgePointEngine() = default;
 
 void EdgePointEngine::set_camera(const Camera& camera) {
   impl_->set_camera(camera);
+}
+void EdgePointEngine::move_object(std::uint32_t object, const Affine3d& world_from_object) {
+  impl_->changes().objects[object] = world_from_object;
+}
+void EdgePointEngine::set_light(std::uint32_t light, const Light& value) {
+  impl_->changes().lights[light] = value;
+}
+void EdgePointEngine::set_rounding(const RoundingSettings& settings) {
+  impl_->changes().rounding = settings;
+}
+const std::shared_ptr<const PreparedScene>& EdgePointEngine::scene() const {
+  return impl_->scene();
 }
 void EdgePointEngine::set_scene(std::shared_ptr<const PreparedScene> scene) {
   impl_->set_scene(std::move(scene));

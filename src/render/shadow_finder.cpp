@@ -68,7 +68,7 @@ std::vector<ShadowLight> shadow_lights(const PreparedScene& prepared) {
                                              cross(area.edge_u, area.edge_v)});
     }
   }
-  for (const SunDisc& sun : prepared.geometry().lights.environment.suns) {
+  for (const SunDisc& sun : prepared.geometry().lights.environment->suns) {
     lights.emplace_back(HomogeneousPoint{Vec3d(sun.direction), 0});
   }
   return lights;

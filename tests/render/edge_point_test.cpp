@@ -1,0 +1,193 @@
+// The edge-and-point engine against the path tracer.
+#include "arris/edge_point.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <memory>
+#include <thread>
+#include <vector>
+
+#include "arris/error.h"
+#include "support/render_scenes.h"
+
+namespace arris::test {
+namespace {
+
+// Boxes and a ball over a floor, under a point light and a dim sky.
+Scene make_scene(int size_px) {
+  Camera camera;
+  camera.position = {3, -6, 4};
+  camera.target = {0, 0, 0.6};
+  camera.fov_deg = 32;
+  Scene scene = make_empty_scene(camera);
+  scene.image.width_px = scene.image.height_px = size_px;
+  scene.image.max_depth = 3;
+  scene.environment = ConstantEnvironment{Rgb(0.15F)};
+  add_object(scene, make_square_mesh(6), make_lambert(0.6F));
+  Material red = make_lambert(0.7F);
+  red.base_color = {0.8F, 0.15F, 0.1F};
+  add_object(scene, make_box_mesh({0.6, 0.6, 0.8}), red, translation({-0.9, 0.2, 0.8}));
+  Material blue = make_lambert(0.5F);
+  blue.base_color = {0.1F, 0.2F, 0.8F};
+  add_object(scene, make_box_mesh({0.5, 0.4, 0.5}), blue, translation({0.9, -0.6, 0.5}));
+  scene.lights.push_back(PointLight{{2.5, -3, 5}, Rgb(60)});
+  return scene;
+}
+
+Image path_picture(const std::shared_ptr<const PreparedScene>& scene, std::uint32_t samples) {
+  RenderOptions options;
+  options.samples = {0, samples};
+  return make_path_renderer()->render(*scene, options).picture.color;
+}
+
+double rmse(const Image& a, const Image& b) {
+  double sum = 0;
+  for (std::size_t i = 0; i < a.values.size(); ++i) {
+    const double d = double(a.values[i]) - double(b.values[i]);
+    sum += d * d;
+  }
+  return std::sqrt(sum / double(a.values.size()));
+}
+
+EdgePointSettings synchronous(EdgePointShader shader = EdgePointShader::gi) {
+  EdgePointSettings settings;
+  settings.synchronous = true;
+  settings.shader = shader;
+  return settings;
+}
+
+TEST(EdgePoint, a_still_view_converges_to_the_path_traced_picture) {
+  const auto scene = prepare_scene(make_scene(64));
+  const Image reference = path_picture(scene, 1024);
+  EdgePointSettings settings = synchronous();
+  settings.density = 1;
+  EdgePointEngine engine(scene, settings);
+  std::vector<double> errors;
+  for (const std::uint32_t paths : {32U, 128U, 512U}) {
+    const Image* picture = &engine.next_frame();
+    while (engine.stats().still_paths < paths) picture = &engine.next_frame();
+    errors.push_back(rmse(*picture, reference));
+  }
+  EXPECT_LT(errors[1], 0.75 * errors[0]);
+  EXPECT_LT(errors[2], 0.75 * errors[1]);
+  // As good as the path tracer with as many paths.
+  const double of_paths = rmse(path_picture(scene, 512), reference);
+  EXPECT_LT(errors[2], 1.5 * of_paths);
+}
+
+TEST(EdgePoint, frames_are_the_same_at_any_number_of_threads) {
+  const auto scene = prepare_scene(make_scene(70));
+  std::vector<Image> last;
+  for (const int threads : {1, 2}) {
+    EdgePointSettings settings = synchronous();
+    settings.threads = threads;
+    EdgePointEngine engine(scene, settings);
+    Camera camera = *scene_of(*scene).camera;
+    for (int i = 0; i < 5; ++i) {
+      camera.position.x += 0.05;
+      engine.set_camera(camera);
+      engine.next_frame();
+    }
+    last.push_back(engine.next_frame());
+  }
+  EXPECT_EQ(last[0].values, last[1].values);
+}
+
+// From the same samples, a fifth of the pixels, the error with edges is at most half of that without (§7.3, Fig. 11).
+TEST(EdgePoint, edges_halve_the_error) {
+  const auto scene = prepare_scene(make_scene(160));
+  const Image reference = path_picture(scene, 256);
+  std::vector<double> errors;
+  for (const bool edges : {true, false}) {
+    EdgePointSettings settings = synchronous();
+    settings.first_density = 0.2;
+    settings.density = 0.01;
+    settings.paths_per_point = 64;
+    settings.use_edges = edges;
+    EdgePointEngine engine(scene, settings);
+    // Shadows are found once the first points have told of them.
+    engine.next_frame();
+    errors.push_back(rmse(engine.next_frame(), reference));
+  }
+  EXPECT_LT(errors[0], 0.5 * errors[1]) << errors[0] << " with edges, " << errors[1] << " without";
+}
+
+// The outline of a rounded box is its rounding's: the picture agrees with the path tracer's along it.
+TEST(EdgePoint, rounded_outlines_are_found) {
+  Scene described = make_scene(128);
+  described.lights.clear();
+  described.environment = ConstantEnvironment{Rgb(1)};
+  described.image.max_depth = 1;
+  for (std::uint32_t i = 1; i < 3; ++i) {
+    RoundingSettings rounding;
+    rounding.method = RoundMethod::exact;
+    rounding.radius = 0.25;
+    described.objects[i].rounding = rounding;
+  }
+  const auto scene = prepare_scene(described);
+  const Image reference = path_picture(scene, 256);
+  EdgePointSettings settings = synchronous(EdgePointShader::direct);
+  settings.first_density = 1;
+  settings.paths_per_point = 32;
+  EdgePointEngine engine(scene, settings);
+  const double error = rmse(engine.next_frame(), reference);
+  EXPECT_GT(engine.stats().edges.silhouette, 50U);
+  settings.use_edges = false;
+  EdgePointEngine without(scene, settings);
+  EXPECT_LT(error, 0.4 * rmse(without.next_frame(), reference)) << error;
+}
+
+TEST(EdgePoint, moved_objects_and_lights_show_where_they_are) {
+  const auto scene = prepare_scene(make_scene(64), {.placement = Placement::movable});
+  EdgePointSettings settings = synchronous(EdgePointShader::direct);
+  settings.density = 0.3;
+  settings.first_density = 1;
+  settings.paths_per_point = 16;
+  EdgePointEngine engine(scene, settings);
+  engine.next_frame();
+  const Image before = engine.next_frame();
+  engine.move_object(1, translation({-0.4, -0.3, 0.8}));
+  engine.set_light(0, PointLight{{-2.5, -3, 5}, Rgb(60)});
+  for (int i = 0; i < 24; ++i) engine.next_frame();
+  const Image after = engine.next_frame();
+  RenderOptions options;
+  options.samples = {0, 256};
+  Scene moved = make_scene(64);
+  moved.image.max_depth = 1;
+  moved.objects[1].world_from_object = translation({-0.4, -0.3, 0.8});
+  moved.lights[0] = PointLight{{-2.5, -3, 5}, Rgb(60)};
+  const Image reference = render_path(moved, 256).picture.color;
+  EXPECT_LT(rmse(after, reference), 0.15 * rmse(before, reference));
+}
+
+TEST(EdgePoint, a_light_that_is_not_there_is_an_error) {
+  EdgePointEngine engine(prepare_scene(make_scene(32)), synchronous());
+  engine.set_light(7, PointLight{});
+  EXPECT_THROW(engine.next_frame(), Error);
+  engine.next_frame();
+}
+
+// Frames go on while the shader works, the scene changes and everything ends in the middle of it.
+TEST(EdgePoint, shading_goes_on_beside_frames) {
+  const auto scene = prepare_scene(make_scene(48), {.placement = Placement::movable});
+  EdgePointSettings settings;
+  settings.density = 0.2;
+  EdgePointEngine engine(scene, settings);
+  Camera camera = *scene_of(*scene).camera;
+  std::uint64_t points = 0;
+  for (int i = 0; i < 400 && (points < 4000 || i < 40); ++i) {
+    camera.position.x += 0.01;
+    engine.set_camera(camera);
+    engine.move_object(1, translation({-0.9 + 0.01 * i, 0.2, 0.8}));
+    if (i % 5 == 0) engine.set_light(0, PointLight{{2.5 - 0.02 * i, -3, 5}, Rgb(60)});
+    engine.next_frame();
+    points += engine.stats().new_points;
+    std::this_thread::yield();
+  }
+  EXPECT_GT(points, 0U);
+  EXPECT_GT(engine.stats().points, 0U);
+}
+
+}  // namespace
+}  // namespace arris::test
