@@ -26,6 +26,20 @@ OptionGroup rounding_group(const std::string& default_radius) {
         "subdivisions (default: the file's, else exact)"}}};
 }
 
+OptionGroup edge_point_group() {
+  return {"Edges and points",
+          {{"--shader", "direct|glossy|gi",
+            "edge-point: which light points are shaded with: direct, and that of glossy surfaces, "
+            "or all (default: gi)"},
+           {"--density", "PART",
+            "edge-point: of the pixels that are shaded anew for each frame (default: 0.02; 1 for a "
+            "single picture)"},
+           {"--point-paths", "N",
+            "edge-point: paths for each point (default: 4 direct, 8 glossy, 16 gi)"},
+           {"--edges", "on|off",
+            "edge-point: off interpolates across all edges, for comparison (default: on)"}}};
+}
+
 OptionGroup input_group() {
   return {
       "Input",
@@ -95,17 +109,8 @@ CommandRow render_row() {
          {"--light-beams", "N",
           "beam: each area light is N x N point lights, whose shadows have no noise; 0: it is "
           "sampled "
-          "(default: 0)"},
-         {"--shader", "direct|glossy|gi",
-          "edge-point: which light points are shaded with: direct, and that of glossy surfaces, "
-          "or all (default: gi)"},
-         {"--density", "PART",
-          "edge-point: of the pixels that are shaded anew for each frame (default: 0.02; 1 for a "
-          "single picture)"},
-         {"--point-paths", "N",
-          "edge-point: paths for each point (default: 4 direct, 8 glossy, 16 gi)"},
-         {"--edges", "on|off",
-          "edge-point: off interpolates across all edges, for comparison (default: on)"}}},
+          "(default: 0)"}}},
+       edge_point_group(),
        input_group(),
        camera_group(),
        {"Staging",

@@ -208,7 +208,7 @@ class PictureMaker {
   }
 
   // Frame 0 is prepared first, whichever are rendered: what depends on the view, such as automatic radii, is its.
-  void render_frames(Scene scene, FrameRange frames) {
+  void render_frames(const Scene& scene, FrameRange frames) {
     count_ = double(frames.last) - frames.first;
     auto prepared =
         prepare(scene, scene.animation.objects.empty() ? Placement::baked : Placement::movable);
@@ -333,7 +333,7 @@ int run_render(const Arguments& arguments) {
   maker.ground_triangles = staging.ground_triangles;
   maker.stats.load_seconds = load.seconds();
   if (request.frames) {
-    maker.render_frames(std::move(loaded.scene), *request.frames);
+    maker.render_frames(loaded.scene, *request.frames);
   } else {
     maker.render_single(std::move(loaded.scene));
   }

@@ -17,22 +17,24 @@ namespace arris {
 template <class T>
 class SharedVector {
  public:
-  using value_type = T;
-  using const_iterator = typename std::vector<T>::const_iterator;
-  using iterator = typename std::vector<T>::iterator;
+  // Named as the standard library's algorithms want it.
+  using value_type = T;  // NOLINT(readability-identifier-naming)
+  using const_iterator =
+      typename std::vector<T>::const_iterator;         // NOLINT(readability-identifier-naming)
+  using iterator = typename std::vector<T>::iterator;  // NOLINT(readability-identifier-naming)
 
   SharedVector() = default;
   SharedVector(std::initializer_list<T> elements)
       : elements_(std::make_shared<std::vector<T>>(elements)) {}
   // A vector is one by itself: callers need not say so.
-  SharedVector(std::vector<T> elements)
+  SharedVector(std::vector<T> elements)  // NOLINT(google-explicit-constructor)
       : elements_(std::make_shared<std::vector<T>>(std::move(elements))) {}
 
   [[nodiscard]] const std::vector<T>& read() const {
     static const std::vector<T> kEmpty;
     return elements_ ? *elements_ : kEmpty;
   }
-  operator const std::vector<T>&() const { return read(); }
+  operator const std::vector<T>&() const { return read(); }  // NOLINT(google-explicit-constructor)
 
   [[nodiscard]] std::size_t size() const { return read().size(); }
   [[nodiscard]] bool empty() const { return read().empty(); }

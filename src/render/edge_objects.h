@@ -33,12 +33,12 @@ struct EdgeTotals {
 
 class EdgeObjects {
  public:
-  EdgeObjects(const PreparedScene& scene, int threads);
+  EdgeObjects(const PreparedScene& prepared, int threads);
   ~EdgeObjects();
 
   // In the world. The scene is the one this was made of, or one whose objects, camera and lights have moved since.
-  std::vector<WorldEdge> find_edges(const PreparedScene& scene, const PixelView& view, int threads,
-                                    EdgeTotals& totals) const;
+  std::vector<WorldEdge> find_edges(const PreparedScene& prepared, const PixelView& view,
+                                    int threads, EdgeTotals& totals) const;
   // What shadows need of an object; nothing if it is no mesh. Valid while both are.
   struct Parts {
     const EdgeMesh* mesh = nullptr;
@@ -54,10 +54,11 @@ class EdgeObjects {
       return std::binary_search(rounded_between.begin(), rounded_between.end(), key);
     }
   };
-  [[nodiscard]] std::optional<Parts> parts(const PreparedScene& scene, std::uint32_t object) const;
+  [[nodiscard]] std::optional<Parts> parts(const PreparedScene& prepared,
+                                           std::uint32_t object) const;
   // Takes in which edges the other scene's roundings round; true if they are other ones.
   bool update_roundings(const PreparedScene& before, const PreparedScene& after);
-  [[nodiscard]] Sphere bounding_sphere(const PreparedScene& scene, std::uint32_t object) const;
+  [[nodiscard]] Sphere bounding_sphere(const PreparedScene& prepared, std::uint32_t object) const;
   [[nodiscard]] std::uint64_t bytes() const;
 
  private:
@@ -71,8 +72,8 @@ class EdgeObjects {
     std::vector<std::pair<std::uint32_t, std::uint32_t>> rounded_between;  // Parts'
   };
 
-  static void set_rounded(const PreparedScene& scene, ObjectEdges& object);
-  static std::vector<RoundedEdge> find_rounded(const PreparedScene& scene,
+  static void set_rounded(const PreparedScene& prepared, ObjectEdges& object);
+  static std::vector<RoundedEdge> find_rounded(const PreparedScene& prepared,
                                                const ObjectEdges& object);
 
   std::vector<ObjectEdges> objects_;

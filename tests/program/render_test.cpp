@@ -460,6 +460,40 @@ TEST(Frames, are_rendered_in_beams_too) {
   EXPECT_THAT(run.err, HasSubstr("f_1.png: 40 x 30 pixels, "));
 }
 
+TEST(Frames, are_made_of_edges_and_points_too) {
+  const Workplace place;
+  test::write_text(place / "moving.toml", kMoving);
+  const std::string options =
+      "render moving.toml --size 80x60 --integrator edge-point --density 0.1 --frames 0..3 ";
+  const Outcome run = place.arris(options + "--aov edges -o f_#.png --stats s.json");
+  ASSERT_EQ(run.code, 0) << run.err;
+  EXPECT_THAT(run.err, HasSubstr("f_2.png: 80 x 60 pixels, "));
+  EXPECT_THAT(run.err, HasSubstr(" new points of "));
+  EXPECT_TRUE(std::filesystem::exists(place / "f_1.edges.png"));
+  const auto stats = nlohmann::json::parse(place.read("s.json"));
+  EXPECT_EQ(stats["frames"], 3);
+  const auto& edge_point = stats["edge_point"];
+  EXPECT_EQ(edge_point["frames"], 3);
+  EXPECT_GT(edge_point["stages_ms"]["total"], 0);
+  EXPECT_GT(edge_point["edges"]["silhouette"], 0);
+  EXPECT_NEAR(edge_point["new_samples_fraction"], 0.1, 0.03);
+  const double classes = double(edge_point["classes"]["empty"]) +
+                         double(edge_point["classes"]["simple"]) +
+                         double(edge_point["classes"]["complex"]);
+  EXPECT_NEAR(classes, 1, 0.02);
+  // The same at any number of threads.
+  ASSERT_EQ(place.arris(options + "-o g_#.png --threads 1").code, 0);
+  EXPECT_TRUE(place.read("f_2.png") == place.read("g_2.png"));
+}
+
+TEST(Render, of_edges_and_points_stands_still_until_each_pixel_has_its_paths) {
+  const Workplace place;
+  const Outcome run =
+      place.arris("render cube.stl --size 60x40 --spp 32 --integrator edge-point -o still.png");
+  ASSERT_EQ(run.code, 0) << run.err;
+  EXPECT_THAT(run.err, HasSubstr("still.png: 60 x 40 pixels, samples 0..32"));
+}
+
 TEST(Frames, have_statistics_in_sum) {
   const Workplace place;
   const Outcome run = render_frames(place, "-o f_#.png --quiet --frames 0..3 --stats -");
