@@ -17,11 +17,11 @@ namespace arris {
 template <class T>
 class SharedVector {
  public:
-  // Named as the standard library's algorithms want it.
-  using value_type = T;  // NOLINT(readability-identifier-naming)
-  using const_iterator =
-      typename std::vector<T>::const_iterator;         // NOLINT(readability-identifier-naming)
-  using iterator = typename std::vector<T>::iterator;  // NOLINT(readability-identifier-naming)
+  // NOLINTBEGIN(readability-identifier-naming): named as the standard library's algorithms want it.
+  using value_type = T;
+  using const_iterator = typename std::vector<T>::const_iterator;
+  using iterator = typename std::vector<T>::iterator;
+  // NOLINTEND(readability-identifier-naming)
 
   SharedVector() = default;
   SharedVector(std::initializer_list<T> elements)

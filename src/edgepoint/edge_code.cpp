@@ -134,8 +134,8 @@ EdgeTables make_edge_tables() {
 }  // namespace
 
 const EdgeTables& edge_tables() {
-  static const EdgeTables tables = make_edge_tables();
-  return tables;
+  static const EdgeTables kTables = make_edge_tables();
+  return kTables;
 }
 
 }  // namespace arris

@@ -11,6 +11,7 @@
 #include "edgepoint/shifted_word.h"
 
 #undef HWY_TARGET_INCLUDE
+// NOLINTNEXTLINE(readability-identifier-naming)
 #define HWY_TARGET_INCLUDE "edgepoint/hidden_points.cpp"
 #include <hwy/foreach_target.h>  // compiles this file once for each kind of processor
 
@@ -175,7 +176,7 @@ class HiddenFinder {
     for (int y = band_.first - 2; y < band_.first + 2; ++y) fetch(y);
     for (int y = band_.first; y < band_.last; ++y) {
       fetch(y + 2);
-      if (y == band_.first || cells_.row_changes_at(y)) cells_.copy_nearest(y, nearest_);
+      if (y == band_.first || DepthCells::row_changes_at(y)) cells_.copy_nearest(y, nearest_);
       for (int word = 0; word < image_.samples.words(); ++word) find_in(y, word);
     }
     return std::move(hidden_);

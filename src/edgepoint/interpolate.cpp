@@ -10,6 +10,7 @@
 #include "edgepoint/shifted_word.h"
 
 #undef HWY_TARGET_INCLUDE
+// NOLINTNEXTLINE(readability-identifier-naming)
 #define HWY_TARGET_INCLUDE "edgepoint/interpolate.cpp"
 #include <hwy/foreach_target.h>  // compiles this file once for each kind of processor
 

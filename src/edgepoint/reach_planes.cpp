@@ -3,6 +3,7 @@
 #include <cstdint>
 
 #undef HWY_TARGET_INCLUDE
+// NOLINTNEXTLINE(readability-identifier-naming)
 #define HWY_TARGET_INCLUDE "edgepoint/reach_planes.cpp"
 #include <hwy/foreach_target.h>  // compiles this file once for each kind of processor
 

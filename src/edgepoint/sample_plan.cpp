@@ -35,7 +35,7 @@ std::vector<std::uint32_t> plan_samples(std::span<const std::uint8_t> wanted,
   std::vector<std::uint32_t> plan;
   const std::uint64_t total = std::accumulate(wanted.begin(), wanted.end(), std::uint64_t{0});
   if (total == 0 || settings.count == 0) return plan;
-  static const auto pattern = make_pattern();
+  static const auto kNoise = make_pattern();
   const double chance = 65536.0 * double(settings.count) / double(total);
   std::array<std::uint32_t, 256> limit{};
   for (std::size_t w = 0; w < limit.size(); ++w) {
@@ -50,7 +50,7 @@ std::vector<std::uint32_t> plan_samples(std::span<const std::uint8_t> wanted,
         const std::size_t row = std::size_t(y) * std::size_t(settings.width_px);
         for (int x = x0; x < std::min(x0 + kTile, settings.width_px); ++x) {
           const auto noise =
-              std::uint16_t(pattern[std::size_t(y % kPattern * kPattern + x % kPattern)] + shift);
+              std::uint16_t(kNoise[std::size_t(y % kPattern * kPattern + x % kPattern)] + shift);
           if (noise < limit[wanted[row + std::size_t(x)]]) {
             plan.push_back(std::uint32_t(row) + std::uint32_t(x));
           }

@@ -229,7 +229,7 @@ std::vector<ShadowEvent> find_shadow_events(const EdgeTree& blocker,
     }
   }
   std::ranges::sort(vertices);
-  vertices.erase(std::ranges::unique(vertices).begin(), vertices.end());
+  vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
   for (const std::uint32_t q : vertices) {
     if (emission.height(position(mesh, q)) <= 0) continue;
     for (std::size_t i = 0; i < 4; ++i) {

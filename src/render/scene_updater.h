@@ -28,7 +28,7 @@ struct SceneChanges {
 
 // Throws Error{input} for an object or light that the scene lacks, and what prepare_moved() and prepare_again()
 // throw.
-std::shared_ptr<const PreparedScene> apply_changes(const PreparedScene& scene,
+std::shared_ptr<const PreparedScene> apply_changes(const PreparedScene& prepared,
                                                    const SceneChanges& changes, int threads);
 
 enum class UpdateMode { at_once, beside };

@@ -34,7 +34,7 @@ struct ShadowTriple {
 };
 
 using ShadowLight = std::variant<HomogeneousPoint, ParallelogramLight>;
-std::vector<ShadowLight> shadow_lights(const PreparedScene& scene);
+std::vector<ShadowLight> shadow_lights(const PreparedScene& prepared);
 
 class ShadowFinder {
  public:

@@ -11,10 +11,10 @@
 namespace arris {
 namespace {
 
-constexpr double kNone_ = -std::numeric_limits<double>::infinity();
+constexpr double kNobody = -std::numeric_limits<double>::infinity();
 
 double nearest_at(const std::vector<EventPiece>& pieces, double s) {
-  double best = kNone_;
+  double best = kNobody;
   for (const EventPiece& p : pieces) {
     if (p.s0 <= s && s <= p.s1) best = std::max(best, p.nearness(s));
   }
@@ -46,8 +46,8 @@ TEST(NearestPieces, keeps_the_nearest_everywhere) {
       const double s = unit(random), expected = nearest_at(all, s);
       const double found = nearest_at(nearest.pieces(), s);
       least = std::min(least, expected);
-      if (expected == kNone_) {
-        ASSERT_EQ(found, kNone_);
+      if (expected == kNobody) {
+        ASSERT_EQ(found, kNobody);
       } else {
         ASSERT_NEAR(found, expected, 1e-9);
       }
@@ -59,14 +59,14 @@ TEST(NearestPieces, keeps_the_nearest_everywhere) {
 TEST(NearestPieces, knows_what_is_covered) {
   NearestPieces nearest;
   nearest.insert({0, 0.5, 1, 2, 0, 0});
-  EXPECT_EQ(nearest.least_nearness(), kNone_);
+  EXPECT_EQ(nearest.least_nearness(), kNobody);
   nearest.insert({0.5, 1, 3, 4, 1, 0});
   EXPECT_EQ(nearest.least_nearness(), 1);
   nearest.insert({0, 1, 5, 6, 2, 0});
   EXPECT_EQ(nearest.least_nearness(), 5);
   EXPECT_EQ(nearest.pieces().size(), 1U);
   nearest.clear();
-  EXPECT_EQ(nearest.least_nearness(), kNone_);
+  EXPECT_EQ(nearest.least_nearness(), kNobody);
 }
 
 }  // namespace
