@@ -9,6 +9,11 @@ namespace {
 // Of the solid's size and coordinates.
 constexpr double kReach = 1e-5;
 
+bool is_in(const Box3d& half_open, Vec3d p) {
+  const Vec3d a = half_open.low, b = half_open.high;
+  return p.x >= a.x && p.x < b.x && p.y >= a.y && p.y < b.y && p.z >= a.z && p.z < b.z;
+}
+
 }  // namespace
 
 CellProbe::CellProbe(std::shared_ptr<const CsgCells> cells) : cells_(std::move(cells)) {
@@ -41,7 +46,9 @@ bool CellProbe::contains(std::uint32_t cell, Vec3d p) const {
   return ((view.truth >> state) & 1) != 0;
 }
 
-std::optional<std::uint32_t> CellProbe::find_cell(Vec3d p) const {
+std::optional<std::uint32_t> CellProbe::find_cell(Vec3d p,
+                                                  std::optional<std::uint32_t> guess) const {
+  if (guess && is_in(cells_->cells()[*guess].own, p)) return guess;
   std::optional<std::uint32_t> found;
   tree_.visit(
       [&](const Box3d& box) {
@@ -49,7 +56,7 @@ std::optional<std::uint32_t> CellProbe::find_cell(Vec3d p) const {
                p.z >= box.low.z && p.z <= box.high.z;
       },
       [&](std::uint32_t cell) {
-        if (holds(cells_->cells()[cell].own, p)) found = cell;
+        if (is_in(cells_->cells()[cell].own, p)) found = cell;
         return !found;
       });
   return found;

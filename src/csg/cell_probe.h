@@ -24,7 +24,9 @@ class CellProbe {
   [[nodiscard]] const PlaceTree& tree() const { return tree_; }
   // Precondition: near the cell.
   [[nodiscard]] bool contains(std::uint32_t cell, Vec3d p) const;
-  [[nodiscard]] std::optional<std::uint32_t> find_cell(Vec3d p) const;
+  // `guess`: looked at first.
+  [[nodiscard]] std::optional<std::uint32_t> find_cell(
+      Vec3d p, std::optional<std::uint32_t> guess = std::nullopt) const;
   // How far from a surface points are asked about, to tell its two sides: far above the rounding of coordinates and
   // the deviation of merged surfaces, far below what is to be seen.
   [[nodiscard]] double reach() const { return reach_; }
@@ -36,10 +38,5 @@ class CellProbe {
   PlaceTree tree_;
   double reach_ = 0, size_ = 0;
 };
-
-inline bool holds(const Box3d& box, Vec3d p) {
-  return p.x >= box.low.x && p.x < box.high.x && p.y >= box.low.y && p.y < box.high.y &&
-         p.z >= box.low.z && p.z < box.high.z;
-}
 
 }  // namespace arris

@@ -98,7 +98,7 @@ class CellCreases {
     const SpaceCell space = make_cell(box);
     for (const std::uint32_t i : all) {
       const SmoothPatch& patch = patches_.patches()[i];
-      if (intersection(patch.box, box).is_empty()) continue;
+      if (!may_hold(patch, box)) continue;
       if (patches_.surface(patch.surface).misses(box)) continue;
       const auto [at, is_new] = is_on.insert({patch.leaf, false});
       if (is_new) at->second = probe_.solid().cover_of(patch.leaf, space) == Cover::on;
@@ -172,18 +172,15 @@ class CellCreases {
     }
   }
 
-  // Between its crossings with leaves all points of a segment are alike.
+  // Between its crossings with other surfaces all points of a segment are alike.
   template <class OnCurve>
   void add_segment(Vec3d a, Vec3d b, std::span<const std::uint32_t> through,
                    std::span<const std::uint32_t> near, const OnCurve& on_curve) {
     if (!(length(b - a) > 1e-9 * probe_.size())) return;
-    thread_local LeafCrossings crossings;
     cuts_.assign({0.0, 1.0});
-    for (const std::uint32_t leaf : view_.leaves) {
-      for (const Crossing& c :
-           crossings.find(probe_.solid().leaf(leaf), probe_.solid().surfaces(), {a, b - a})) {
-        if (c.t > 0 && c.t < 1) cuts_.push_back(c.t);
-      }
+    for (const std::uint32_t surface : near) {
+      if (std::ranges::find(through, surface) != through.end()) continue;
+      patches_.surface(surface).collect_crossings(a, b, cuts_);
     }
     std::ranges::sort(cuts_);
     const std::size_t before = out_.size();

@@ -124,8 +124,9 @@ class PatchOutline {
   }
   [[nodiscard]] std::optional<std::uint32_t> boundary_cell(std::optional<Vec3d> p,
                                                            Sides sides) const {
-    if (!p || !holds(patch_.box, *p)) return std::nullopt;
-    const std::optional<std::uint32_t> cell = probe_.find_cell(*p);
+    if (!p || !may_hold(patch_, *p)) return std::nullopt;
+    const std::optional<std::uint32_t> cell = probe_.find_cell(*p, last_cell_);
+    if (cell) last_cell_ = cell;
     return cell && is_boundary(*cell, *p, sides) ? cell : std::nullopt;
   }
 
@@ -133,6 +134,14 @@ class PatchOutline {
   void add_line(Vec3d origin, Vec3d direction) {
     double t0 = -kInfinity, t1 = kInfinity;
     if (!clip_line(patch_.box, origin, direction, t0, t1)) return;
+    for (const CsgHalfSpace& side : patch_.within) {
+      const double height = side.d - dot(side.normal, origin);
+      const double slope = dot(side.normal, direction);
+      if (slope == 0 && height < 0) return;
+      if (slope > 0) t1 = std::min(t1, height / slope);
+      if (slope < 0) t0 = std::max(t0, height / slope);
+    }
+    if (!(t0 < t1)) return;
     origin += direction * t0;
     direction *= t1 - t0;
     thread_local LeafCrossings crossings;
@@ -151,6 +160,7 @@ class PatchOutline {
           }
           cuts.assign({from, to});
           for (const std::uint32_t leaf : view.leaves) {
+            if (leaf == patch_.leaf) continue;  // within it to its end
             for (const Crossing& c : crossings.find(
                      probe_.solid().leaf(leaf), probe_.solid().surfaces(), {origin, direction})) {
               if (c.t > from && c.t < to) cuts.push_back(c.t);
@@ -245,6 +255,7 @@ class PatchOutline {
   const SmoothPatch& patch_;
   const SmoothSurface& surface_;
   std::vector<OutlineSegment>& out_;
+  mutable std::optional<std::uint32_t> last_cell_;  // where to look first
 };
 
 }  // namespace

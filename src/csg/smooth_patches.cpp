@@ -13,6 +13,8 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 // Boxes of patches are wider by this part of the leaf's coordinates: faces move onto equal ones.
 constexpr double kBoxSlack = 2 * kMergedDeviation;
+// Pieces of a rounded leaf's surface go on beyond their neighbours by this part of the radius.
+constexpr double kBesideRounding = 1e-4;
 
 Quadratic plane_form(const CsgPlane& plane) {
   Quadratic form;
@@ -70,22 +72,62 @@ Box3d map_box(const Affine3d& m, const Box3d& box) {
   return out;
 }
 
+// normal·x ≤ d in another frame.
+CsgHalfSpace map_to(const Affine3d& other_from_own, const CsgHalfSpace& own) {
+  const Mat3d turned = transpose(other_from_own.linear);
+  return {turned * own.normal, own.d - dot(own.normal, other_from_own.translation)};
+}
+
+// Where an edge's cylinder is the rounded leaf's surface: no vertex of the core is farther out. The two that decide are
+// seen along the edge at the widest angle.
+std::vector<CsgHalfSpace> sides_of_edge(const RoundedLeaf& rounded, Vec3d a, Vec3d b) {
+  const Vec3d along = normalize(b - a);
+  std::vector<Vec3d> inward;
+  Vec3d middle;
+  for (const Vec3d& v : rounded.vertices) {
+    const Vec3d d = v - a, across = d - along * dot(d, along);
+    if (!(length(across) > 1e-9 * length(d))) continue;
+    inward.push_back(normalize(across));
+    middle += inward.back();
+  }
+  std::vector<CsgHalfSpace> sides{{along, dot(along, b)}, {-along, -dot(along, a)}};
+  for (const double sign : {-1.0, 1.0}) {
+    const Vec3d turned = cross(along, middle) * sign;
+    const auto widest = std::ranges::min_element(
+        inward, {}, [&](Vec3d d) { return dot(d, turned) >= 0 ? dot(d, middle) : kInfinity; });
+    if (widest != inward.end()) sides.push_back({*widest, dot(*widest, a)});
+  }
+  return sides;
+}
+
+std::vector<CsgHalfSpace> sides_of_vertex(const RoundedLeaf& rounded, Vec3d v) {
+  std::vector<CsgHalfSpace> sides;
+  for (const auto& [a, b] : rounded.edges) {
+    if (a != v && b != v) continue;
+    const Vec3d away = normalize(a == v ? b - a : a - b);
+    sides.push_back({away, dot(away, v)});
+  }
+  return sides;
+}
+
 }  // namespace
 
 double SmoothSurface::value(Vec3d p) const {
   if (const auto* form = std::get_if<Quadratic>(&form_)) return form->value(p);
   const auto& torus = std::get<TorusLeaf>(form_);
   const Vec3d q = transform_point(torus.primitive_from_object, p);
-  return std::hypot(std::hypot(q.x, q.y) - torus.ring_radius, q.z) - torus.tube_radius;
+  const double off = std::sqrt(q.x * q.x + q.y * q.y) - torus.ring_radius;
+  return std::sqrt(off * off + q.z * q.z) - torus.tube_radius;
 }
 
 Vec3d SmoothSurface::gradient(Vec3d p) const {
   if (const auto* form = std::get_if<Quadratic>(&form_)) return form->gradient(p);
   const auto& torus = std::get<TorusLeaf>(form_);
   const Vec3d q = transform_point(torus.primitive_from_object, p);
-  const double rho = std::hypot(q.x, q.y), off = std::hypot(rho - torus.ring_radius, q.z);
+  const double rho = std::sqrt(q.x * q.x + q.y * q.y), from_ring = rho - torus.ring_radius;
+  const double off = std::sqrt(from_ring * from_ring + q.z * q.z);
   if (!(rho > 0 && off > 0)) return {};
-  const double across = (rho - torus.ring_radius) / (rho * off);
+  const double across = from_ring / (rho * off);
   return transpose(torus.primitive_from_object.linear) *
          Vec3d(q.x * across, q.y * across, q.z / off);
 }
@@ -104,12 +146,51 @@ bool SmoothSurface::misses(const Box3d& box) const {
   return std::abs(value(middle)) > length(m.x) * h.x + length(m.y) * h.y + length(m.z) * h.z;
 }
 
+void SmoothSurface::collect_crossings(Vec3d a, Vec3d b, std::vector<double>& out) const {
+  const Vec3d d = b - a;
+  const auto add = [&](double t) {
+    if (t > 0 && t < 1) out.push_back(t);
+  };
+  if (const auto* form = std::get_if<Quadratic>(&form_)) {
+    const double c0 = form->value(a), c1 = dot(form->gradient(a), d), c2 = dot(d, form->q * d);
+    const double discriminant = c1 * c1 - 4 * c0 * c2;
+    if (!(discriminant >= 0)) return;
+    const double q = -(c1 + std::copysign(std::sqrt(discriminant), c1)) / 2;
+    add(c0 / q);
+    add(q / c2);
+    return;
+  }
+  constexpr int kSteps = 16;
+  double before = value(a);
+  for (int i = 1; i <= kSteps; ++i) {
+    const double after = value(a + d * (double(i) / kSteps));
+    if ((before > 0) != (after > 0)) add((i - 1 + before / (before - after)) / kSteps);
+    before = after;
+  }
+}
+
 bool SmoothSurface::is_tame(const Box3d& box) const {
   const auto* torus = std::get_if<TorusLeaf>(&form_);
   if (torus == nullptr) return true;
   const Mat3d& m = torus->primitive_from_object.linear;
   const Vec3d h = (box.high - box.low) * 0.5;
   return length(m.x) * h.x + length(m.y) * h.y + length(m.z) * h.z < torus->tube_radius / 2;
+}
+
+bool may_hold(const SmoothPatch& patch, Vec3d p) {
+  return !intersection(patch.box, {p, p}).is_empty() &&
+         std::ranges::all_of(
+             patch.within, [&](const CsgHalfSpace& side) { return dot(side.normal, p) <= side.d; });
+}
+
+bool may_hold(const SmoothPatch& patch, const Box3d& box) {
+  if (intersection(patch.box, box).is_empty()) return false;
+  const Vec3d middle = (box.low + box.high) * 0.5, h = (box.high - box.low) * 0.5;
+  return std::ranges::all_of(patch.within, [&](const CsgHalfSpace& side) {
+    const Vec3d n = side.normal;
+    return dot(n, middle) <=
+           side.d + std::abs(n.x) * h.x + std::abs(n.y) * h.y + std::abs(n.z) * h.z;
+  });
 }
 
 struct SmoothPatches::Adder {
@@ -126,26 +207,41 @@ struct SmoothPatches::Adder {
     const double size = max_component(max(max(box.high, -box.low), Vec3d(0)));
     const Vec3d slack(std::isfinite(size) ? kBoxSlack * size : 0);
     out.patches_.push_back(
-        {surface, leaf,
-         intersection(intersection({box.low - slack, box.high + slack}, bounds()),
-                      solid.bounds())});
+        {surface,
+         leaf,
+         intersection(intersection({box.low - slack, box.high + slack}, bounds()), solid.bounds()),
+         {}});
     return std::uint32_t(out.patches_.size() - 1);
   }
   std::uint32_t add_surface(SmoothSurface::Form form) const {
     out.surfaces_.emplace_back(std::move(form));
     return std::uint32_t(out.surfaces_.size() - 1);
   }
-  void add_quadric(std::uint32_t quadric, const Box3d& box) const {
+  void add_quadric(std::uint32_t quadric, const Box3d& box,
+                   std::vector<CsgHalfSpace> within) const {
     out.curved_.push_back(
         {solid.surfaces().quadrics()[quadric], add_patch(quadric_surface(quadric), box)});
+    out.patches_.back().within = std::move(within);
   }
-  void add_own_quadric(const CsgQuadric& quadric, const Box3d& box) const {
+  void add_rounding(const CsgQuadric& quadric, const Box3d& box,
+                    const std::vector<CsgHalfSpace>& within) const {
     out.curved_.push_back({quadric, add_patch(add_surface(quadric_form(quadric)), box)});
+    const auto& rounded = std::get<RoundedLeaf>(solid.leaf(leaf).shape);
+    for (CsgHalfSpace side : within) {
+      side.d += kBesideRounding * rounded.radius;
+      out.patches_.back().within.push_back(map_to(rounded.primitive_from_object, side));
+    }
   }
 
   void operator()(const ConvexLeaf& convex) const {
     for (const PlaneRef& face : convex.planes) add_patch(face.plane, bounds());
-    if (convex.quadric) add_quadric(*convex.quadric, bounds());
+    if (!convex.quadric) return;
+    std::vector<CsgHalfSpace> within;
+    for (const PlaneRef& face : convex.planes) {
+      const double d = solid.surfaces().planes()[face.plane].d;
+      within.push_back({solid.surfaces().normal_of(face), face.flipped ? -d : d});
+    }
+    add_quadric(*convex.quadric, bounds(), std::move(within));
   }
   void operator()(const TorusLeaf& torus) const {
     out.tori_.push_back(add_patch(add_surface(torus), bounds()));
@@ -175,12 +271,14 @@ struct SmoothPatches::Adder {
     for (std::uint32_t i = 0; i < revolution.swept.size(); ++i) {
       const RegionEdge& e = revolution.region.edges()[i];
       const double r = std::max(std::abs(e.a.x), std::abs(e.b.x));
-      const Box3d box = map_box(object_from_primitive,
-                                {{-r, -r, std::min(e.a.y, e.b.y)}, {r, r, std::max(e.a.y, e.b.y)}});
+      const double low = std::min(e.a.y, e.b.y), high = std::max(e.a.y, e.b.y);
+      const Box3d box = map_box(object_from_primitive, {{-r, -r, low}, {r, r, high}});
       if (const auto* ring = std::get_if<RevolutionLeaf::Ring>(&revolution.swept[i])) {
         add_patch(ring->plane.plane, box);
       } else if (const auto* band = std::get_if<RevolutionLeaf::Band>(&revolution.swept[i])) {
-        add_quadric(band->quadric, box);
+        add_quadric(band->quadric, box,
+                    {map_to(revolution.primitive_from_object, {{0, 0, 1}, high}),
+                     map_to(revolution.primitive_from_object, {{0, 0, -1}, -low})});
       }
     }
   }
@@ -208,13 +306,14 @@ struct SmoothPatches::Adder {
       const Vec3d z = normalize(b - a);
       const Vec3d x = normalize(cross(z, std::abs(z.x) < 0.6 ? Vec3d(1, 0, 0) : Vec3d(0, 1, 0)));
       const Affine3d own{{x * rounded.radius, cross(z, x) * rounded.radius, b - a}, a};
-      add_own_quadric({CsgQuadric::Form::cylinder, inverse(object_from_primitive * own)},
-                      map_box(object_from_primitive, {min(a, b) - r, max(a, b) + r}));
+      add_rounding({CsgQuadric::Form::cylinder, inverse(object_from_primitive * own)},
+                   map_box(object_from_primitive, {min(a, b) - r, max(a, b) + r}),
+                   sides_of_edge(rounded, a, b));
     }
     for (const Vec3d& v : rounded.vertices) {
       const Affine3d own{{{r.x, 0, 0}, {0, r.x, 0}, {0, 0, r.x}}, v};
-      add_own_quadric({CsgQuadric::Form::ellipsoid, inverse(object_from_primitive * own)},
-                      map_box(object_from_primitive, {v - r, v + r}));
+      add_rounding({CsgQuadric::Form::ellipsoid, inverse(object_from_primitive * own)},
+                   map_box(object_from_primitive, {v - r, v + r}), sides_of_vertex(rounded, v));
     }
   }
 };

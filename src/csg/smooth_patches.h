@@ -41,6 +41,8 @@ class SmoothSurface {
   [[nodiscard]] Vec3d gradient(Vec3d p) const;
   // No point of the box is one of the surface; true is certain but for rounding.
   [[nodiscard]] bool misses(const Box3d& box) const;
+  // Appends where the segment from a to b crosses the surface, as parts of it; of a ring, to a sixteenth.
+  void collect_crossings(Vec3d a, Vec3d b, std::vector<double>& out) const;
   // The gradients in the box are about combinations of those at its corners.
   [[nodiscard]] bool is_tame(const Box3d& box) const;
 
@@ -50,8 +52,13 @@ class SmoothSurface {
 
 struct SmoothPatch {
   std::uint32_t surface = 0, leaf = 0;
-  Box3d box;  // holds it
+  Box3d box;                         // holds it
+  std::vector<CsgHalfSpace> within;  // and all of these; normals not unit
 };
+
+// But for rounding, which the leaf's own membership settles.
+bool may_hold(const SmoothPatch& patch, Vec3d p);
+bool may_hold(const SmoothPatch& patch, const Box3d& box);
 
 // Between two triangles of a mesh leaf.
 struct MeshLeafEdge {

@@ -136,6 +136,15 @@ TEST(csg_edges, materials_part_a_plane) {
 struct Shares {
   std::size_t jumps = 0, found = 0, close = 0;
   std::size_t seen = 0, real = 0;
+
+  Shares& operator+=(const Shares& other) {
+    jumps += other.jumps;
+    found += other.found;
+    close += other.close;
+    seen += other.seen;
+    real += other.real;
+    return *this;
+  }
 };
 
 // Of points of found edges that are seen, those across which something changes.
@@ -159,37 +168,52 @@ void count_real(CsgPicture& picture, std::span<const CsgPicture::Projected> edge
   }
 }
 
+Shares measure(const CsgTree& tree, Vec3d eye, Vec3d target, double width, CsgRandom& random) {
+  const CsgSolid solid(tree);
+  const auto cells = cells_of(tree);
+  Shares one;
+  if (cells->cells().empty()) return one;
+  const CsgEdges edges(cells, 0);
+  CsgPicture picture(solid, eye, target, width, 64);
+  CsgEdges::Found found = edges.find(eye, 0);
+  found.sharp.insert(found.sharp.end(), found.silhouette.begin(), found.silhouette.end());
+  const std::vector<CsgPicture::Projected> projected = picture.project(found.sharp);
+  for (const CsgJump& jump : picture.find_jumps(radians(3))) {
+    const double distance = CsgPicture::distance_to(projected, jump);
+    ++one.jumps;
+    one.found += distance < 1 ? 1 : 0;
+    one.close += distance < 0.25 ? 1 : 0;
+  }
+  count_real(picture, projected, random, one);
+  return one;
+}
+
+TEST(csg_edges, changes_of_every_kind_of_leaf_lie_on_edges) {
+  CsgRandom random(11);
+  for (int kind = 0; kind < kPrimitiveKinds - 1; ++kind) {
+    Shares all;
+    for (int i = 0; i < 6; ++i) {
+      const CsgTree tree = one_leaf(random_primitive(random, kind), random_placement(random, 0.3));
+      all += measure(tree, random_unit(random) * uniform(random, 4.0, 9.0), {}, 4, random);
+    }
+    std::printf("kind %d: jumps %zu found %zu close %zu; seen %zu real %zu\n", kind, all.jumps,
+                all.found, all.close, all.seen, all.real);
+    EXPECT_GT(all.jumps, 200U) << kind;
+  }
+}
+
 TEST(csg_edges, changes_seen_by_rays_lie_on_edges) {
   CsgRandom random(7);
   Shares all;
   for (int i = 0; i < 40; ++i) {
     const CsgTree tree = random_tree(random, 3);
-    const CsgSolid solid(tree);
-    const auto cells = cells_of(tree);
-    if (cells->cells().empty()) continue;
-    const CsgEdges edges(cells, 0);
     const Vec3d eye = random_unit(random) * uniform(random, 4.0, 9.0);
-    CsgPicture picture(solid, eye, random_vector(random, 0.3), 5, 64);
-    CsgEdges::Found found = edges.find(eye, 0);
-    found.sharp.insert(found.sharp.end(), found.silhouette.begin(), found.silhouette.end());
-    const std::vector<CsgPicture::Projected> projected = picture.project(found.sharp);
-    Shares one;
-    for (const CsgJump& jump : picture.find_jumps(radians(3))) {
-      const double distance = CsgPicture::distance_to(projected, jump);
-      ++one.jumps;
-      one.found += distance < 1 ? 1 : 0;
-      one.close += distance < 0.25 ? 1 : 0;
-    }
-    count_real(picture, projected, random, one);
-    if (one.found < one.jumps || one.real < one.seen * 0.9) {
+    const Shares one = measure(tree, eye, random_vector(random, 0.3), 5, random);
+    if (one.found < one.jumps || double(one.real) < double(one.seen) * 0.9) {
       std::printf("solid %d: jumps %zu found %zu close %zu; seen %zu real %zu\n", i, one.jumps,
                   one.found, one.close, one.seen, one.real);
     }
-    all.jumps += one.jumps;
-    all.found += one.found;
-    all.close += one.close;
-    all.seen += one.seen;
-    all.real += one.real;
+    all += one;
   }
   std::printf("jumps %zu: within a pixel %.4f, within a quarter %.4f; seen edges %zu: real %.4f\n",
               all.jumps, double(all.found) / double(all.jumps),
