@@ -11,6 +11,7 @@
 #include "edgepoint/frame_maker.h"
 #include "edges/welded_mesh.h"
 #include "render/rounded_edges.h"
+#include "render/scene_geometry.h"
 
 namespace arris {
 namespace {
@@ -150,6 +151,17 @@ EdgeObjects::EdgeObjects(const PreparedScene& prepared, int threads) {
       set_rounded(prepared, objects_[i]);
     }
   });
+  find_solids(prepared, threads);
+}
+
+// Objects that are made of one tree share its edges.
+void EdgeObjects::find_solids(const PreparedScene& prepared, int threads) {
+  std::map<const CsgCells*, std::shared_ptr<const CsgEdges>> found;
+  for (const std::shared_ptr<CsgObject>& object : prepared.geometry().csg.objects) {
+    std::shared_ptr<const CsgEdges>& edges = found[object->cells.get()];
+    if (!edges) edges = std::make_shared<const CsgEdges>(object->cells, threads);
+    objects_[object->object.index].solid = edges;
+  }
 }
 
 EdgeObjects::~EdgeObjects() = default;
@@ -182,11 +194,18 @@ bool EdgeObjects::update_roundings(const PreparedScene& before, const PreparedSc
 }
 
 Sphere EdgeObjects::bounding_sphere(const PreparedScene& prepared, std::uint32_t object) const {
-  const std::optional<Parts> parts = this->parts(prepared, object);
-  if (!parts) return {};
-  const Vec3d half = (parts->mesh->bounds_max - parts->mesh->bounds_min) * 0.5;
-  const Mat3d& m = parts->world->linear;
-  return {transform_point(*parts->world, parts->mesh->bounds_min + half),
+  Box3d box;
+  if (const std::optional<Parts> parts = this->parts(prepared, object)) {
+    box = {parts->mesh->bounds_min, parts->mesh->bounds_max};
+  } else if (const CsgEdges* const edges = solid(object)) {
+    box = edges->bounds();
+  } else {
+    return {};
+  }
+  const Vec3d half = (box.high - box.low) * 0.5;
+  const Affine3d& world = prepared.scene().objects[object].world_from_object;
+  const Mat3d& m = world.linear;
+  return {transform_point(world, box.low + half),
           length(m.x) * half.x + length(m.y) * half.y + length(m.z) * half.z};
 }
 
@@ -241,9 +260,20 @@ std::vector<WorldEdge> EdgeObjects::find_edges(const PreparedScene& prepared, co
   const RoundedView rounded_view = make_rounded_view(view);
   std::vector<Found> found(objects_.size());
   parallel_for(objects_.size(), {.grain = 1, .threads = threads}, [&](std::size_t i) {
+    const Affine3d& world = scene.objects[i].world_from_object;
+    if (objects_[i].solid) {
+      const CsgEdges::Found of_solid =
+          objects_[i].solid->find(transform_point(inverse(world), view.eye), threads);
+      const auto add = [&](const CsgEdges::Segment& s) {
+        found[i].edges.push_back(
+            {Vec3f(transform_point(world, s.a)), Vec3f(transform_point(world, s.b))});
+      };
+      std::ranges::for_each(of_solid.sharp, add);
+      std::ranges::for_each(of_solid.silhouette, add);
+      found[i].sharp = of_solid.sharp.size();
+    }
     if (!objects_[i].mesh) return;
     const MeshEdges& object = *objects_[i].mesh;
-    const Affine3d& world = scene.objects[i].world_from_object;
     const RoundedGeometry* rounding = nullptr;
     if (!objects_[i].rounded.empty()) {
       rounding = &prepared.rounding().geometries[objects_[i].geometry];
@@ -294,7 +324,13 @@ std::optional<EdgeObjects::Parts> EdgeObjects::parts(const PreparedScene& prepar
 std::uint64_t EdgeObjects::bytes() const {
   std::uint64_t sum = 0;
   std::vector<const MeshEdges*> counted;
+  std::vector<const CsgEdges*> solids;
   for (const ObjectEdges& object : objects_) {
+    const CsgEdges* const solid = object.solid.get();
+    if (solid != nullptr && std::ranges::find(solids, solid) == solids.end()) {
+      solids.push_back(solid);
+      sum += solid->bytes();
+    }
     const MeshEdges* const mesh = object.mesh.get();
     if (mesh == nullptr || std::find(counted.begin(), counted.end(), mesh) != counted.end())
       continue;

@@ -2,7 +2,8 @@
 // What       builds the edge tree of every mesh once; objects that share a mesh share it. An edge is drawn as a
 //            silhouette,
 //            or wherever it can be seen if shading jumps across it: where the faces of a flat mesh turn, where vertex
-//            normals, materials or texture coordinates differ on its two sides, or where it is open.
+//            normals, materials or texture coordinates differ on its two sides, or where it is open. Solids of solids
+//            have their own edges (csg_edges.h).
 // Source     Bala, Walter, Greenberg (2003), §6.1, §6.2
 #pragma once
 
@@ -18,6 +19,7 @@
 #include "edgepoint/edge_raster.h"
 #include "edgepoint/edge_tree.h"
 #include "edgepoint/face_tree.h"
+#include "render/csg_edges.h"
 #include "render/prepared_scene.h"
 
 namespace arris {
@@ -56,6 +58,10 @@ class EdgeObjects {
   };
   [[nodiscard]] std::optional<Parts> parts(const PreparedScene& prepared,
                                            std::uint32_t object) const;
+  // Of an object that is a solid of solids; else null.
+  [[nodiscard]] const CsgEdges* solid(std::uint32_t object) const {
+    return object < objects_.size() ? objects_[object].solid.get() : nullptr;
+  }
   // Takes in which edges the other scene's roundings round; true if they are other ones.
   bool update_roundings(const PreparedScene& before, const PreparedScene& after);
   [[nodiscard]] Sphere bounding_sphere(const PreparedScene& prepared, std::uint32_t object) const;
@@ -67,11 +73,13 @@ class EdgeObjects {
   enum class RoundedEdge : std::uint8_t { no, yes, painted };
   struct ObjectEdges {
     std::shared_ptr<const MeshEdges> mesh;  // null: no edges are known
+    std::shared_ptr<const CsgEdges> solid;  // null: a mesh
     std::uint32_t geometry = kNoGeometry;
     std::vector<RoundedEdge> rounded;  // of the mesh's edges; empty: none
     std::vector<std::pair<std::uint32_t, std::uint32_t>> rounded_between;  // Parts'
   };
 
+  void find_solids(const PreparedScene& prepared, int threads);
   static void set_rounded(const PreparedScene& prepared, ObjectEdges& object);
   static std::vector<RoundedEdge> find_rounded(const PreparedScene& prepared,
                                                const ObjectEdges& object);

@@ -202,11 +202,12 @@ class EdgePointEngine::Impl {
   }
 
   void take(const ShadePlan& plan, const ShadeResults& results) {
-    // What was shaded in a scene that has changed since shows things where they no longer are.
     if (plan.scene == scene_) {
       cache_.add(results.points, frame_);
-      shadows_.add(results.triples);
+    } else {
+      cache_.add(moved_points(*plan.scene, results.points), frame_);
     }
+    shadows_.add(results.triples);
     if (plan.view == view_) {
       for (const PixelPaths& p : results.pixels) film_.add(p.pixel, p.sum, p.paths);
     }
@@ -214,6 +215,20 @@ class EdgePointEngine::Impl {
     stats_.rays.rounded += results.rays.rounded;
     stats_.rays.camera += results.items * std::uint64_t(shader_.paths);
     stats_.new_points += results.items;
+  }
+
+  // Points that were shaded in a scene before, where their objects are now. Their light is that of then.
+  [[nodiscard]] std::vector<ShadedPoint> moved_points(const PreparedScene& before,
+                                                      std::vector<ShadedPoint> points) const {
+    const std::vector<Object>&then = before.scene().objects, &now = scene_->scene().objects;
+    for (ShadedPoint& point : points) {
+      if (point.object >= now.size()) continue;
+      const Affine3d &from = then[point.object].world_from_object,
+                     &to = now[point.object].world_from_object;
+      if (from == to) continue;
+      point.position = Vec3f(transform_point(to * inverse(from), Vec3d(point.position)));
+    }
+    return points;
   }
 
   void keep_report(const FrameReport& report, const EdgeTotals& totals);

@@ -1,0 +1,42 @@
+// csg_edges.h — what of a solid of solids is drawn as an edge
+// What       CsgEdges finds the edges of a solid once, where its surfaces meet, and its outlines from any eye
+// In / Out   the tree's space; eyes at infinity are taken far away
+// Guarantee  those of crease_finder.h and csg_outline.h
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "csg/crease_finder.h"
+#include "csg/csg_outline.h"
+
+namespace arris {
+
+class CsgEdges {
+ public:
+  CsgEdges(std::shared_ptr<const CsgCells> cells, int threads);
+
+  struct Segment {
+    Vec3d a, b;
+  };
+  struct Found {
+    std::vector<Segment> sharp, silhouette;
+  };
+  [[nodiscard]] Found find(Vec3d eye, int threads) const;
+  // Where rays from the eye touch the solid and go on beside it: where its shadow begins.
+  [[nodiscard]] std::vector<Segment> find_touched(Vec3d eye, int threads) const;
+
+  [[nodiscard]] const std::vector<CreaseSegment>& creases() const { return creases_; }
+  // Bounds of the solid's surface.
+  [[nodiscard]] Box3d bounds() const;
+  [[nodiscard]] std::uint64_t bytes() const;
+
+ private:
+  std::shared_ptr<const CellProbe> probe_;
+  std::shared_ptr<const SmoothPatches> patches_;
+  CsgOutline outline_;
+  std::vector<CreaseSegment> creases_;
+};
+
+}  // namespace arris
