@@ -29,7 +29,7 @@ struct CreaseSegment {
   enum class Kind : std::uint8_t {
     soft,     // an edge where one of its two sides faces the eye and the other doesn't
     sharp,    // an edge where one of its two sides faces the eye
-    contact,  // always an edge: more than two pieces of surface meet
+    contact,  // always an edge: more than two pieces of surface meet, or they turn along it
   };
   Vec3d a, b;
   Kind kind = Kind::contact;
@@ -41,6 +41,8 @@ struct CreaseSegment {
 inline constexpr double kSoftTurn = radians(2);
 inline constexpr double kNoTurn = radians(0.2);
 inline constexpr double kChordTurn = radians(6);
+// Along a segment that isn't always drawn no side turns by more.
+inline constexpr double kSideTurn = radians(8);
 inline constexpr double kShortChord = 5e-4;
 inline constexpr double kTangent = radians(1);
 

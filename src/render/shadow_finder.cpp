@@ -29,12 +29,12 @@ std::vector<ShadowEvent> rounded_events(const EdgeObjects::Parts& blocker,
                   : transform_point(*blocker.world,
                                     (blocker.mesh->bounds_min + blocker.mesh->bounds_max) * 0.5) +
                         normalize(light.xyz) * (size * kFarAway);
-  std::vector<WorldEdge> outline;
-  find_rounded_outline(*blocker.rounding, RoundedView{eye, {0, 0, 1}, -1}, outline);
-  for (const WorldEdge& edge : outline) {
+  for (const RoundedTangent& tangent :
+       find_rounded_tangents(*blocker.rounding, RoundedView{eye, {0, 0, 1}, 0})) {
     ShadowEvent event;
-    event.origin = {Vec3d(edge.a), Vec3d(edge.b)};
+    event.origin = {Vec3d(tangent.edge.a), Vec3d(tangent.edge.b)};
     event.light = {light, light};
+    event.void_depth = tangent.void_depth;
     events.push_back(event);
   }
   return events;
@@ -164,7 +164,7 @@ bool ShadowFinder::update(const PreparedScene& scene, const EdgeObjects& objects
     std::vector<ShadowReceiver> receivers;
     for (const std::uint32_t receiver : pair.receivers) {
       const std::optional<EdgeObjects::Parts> r = objects.parts(scene, receiver);
-      if (r) receivers.push_back({r->faces, *r->world, receiver == blocker});
+      if (r) receivers.push_back({r->faces, *r->world, receiver == blocker, r->voids});
     }
     pair.edges.clear();
     for (const ShadowEdge& edge : find_shadow_edges(pair.events, receivers)) {
