@@ -50,16 +50,16 @@ class Outline {
     return Vec3d(data_.faces[face].normal);
   }
 
-  // na, nb: the normals there; axis: the cylinder's, or 0.
-  void emit(Vec3d a, Vec3d b, Vec3d na, Vec3d nb, Vec3d axis) {
+  // na, nb: the normals there.
+  void emit(Vec3d a, Vec3d b, Vec3d na, Vec3d nb) {
     const Vec3d p = transform_point(world_, a + center_), q = transform_point(world_, b + center_);
     if (!is_seen_rounded(view_, world_radius_, (p + q) * 0.5)) return;
-    const double depth = std::max(void_depth(a, na, axis), void_depth(b, nb, axis));
+    const double depth = std::max(void_depth(a, na), void_depth(b, nb));
     out_.push_back({{Vec3f(p), Vec3f(q)}, depth * (world_radius_ / data_.radius)});
   }
 
   // On both sides of a point where rays from the eye touch.
-  [[nodiscard]] double void_depth(Vec3d p, Vec3d n, Vec3d axis) const {
+  [[nodiscard]] double void_depth(Vec3d p, Vec3d n) const {
     const Vec3d d = normalize(p - (eye_ - center_));
     double before = kFarthest, after = kFarthest, least_cosine = 1;
     for (const Vec3d& m : normals_) {
@@ -68,7 +68,8 @@ class Outline {
       for (const Vec3d& other : normals_) least_cosine = std::min(least_cosine, dot(m, other));
     }
     const double tangent = std::sqrt((1 - least_cosine) / std::max(1 + least_cosine, 1e-9));
-    const double across = length(d - axis * dot(d, axis));
+    double across = 1;
+    for (const Vec3d& axis : axes_) across = std::min(across, length(d - axis * dot(d, axis)));
     const double neighbor = 2 * tangent / std::max(across, 1 / kFarthest);
     return data_.radius * std::min(std::max(before, after) + neighbor, kFarthest);
   }
@@ -107,6 +108,7 @@ class Outline {
     const Vec3d x = across / distance, y = cross(axis, x);
     const Vec3d na = face_normal(arc.face_a), nb = face_normal(arc.face_b);
     normals_ = {na, nb};
+    axes_ = {axis};
     bool crossed = false;
     for (const double side : {-1.0, 1.0}) {
       const Vec3d n = x * cosine + y * (side * sine);
@@ -116,7 +118,7 @@ class Outline {
       crossed = true;
       const Vec3d offset = n * data_.radius;
       const double t0 = end_of(arc, false, offset), t1 = end_of(arc, true, offset);
-      if (t0 < t1) emit(p0 + axis * t0 + offset, p0 + axis * t1 + offset, n, n, axis);
+      if (t0 < t1) emit(p0 + axis * t0 + offset, p0 + axis * t1 + offset, n, n);
     }
     return crossed;
   }
@@ -132,9 +134,11 @@ class Outline {
     const double distance = length(to_eye);
     if (!any || distance <= data_.radius) return;
     normals_.clear();
+    axes_.clear();
     for (const std::uint32_t arc : links) {
       normals_.push_back(face_normal(data_.arcs[arc].face_a));
       normals_.push_back(face_normal(data_.arcs[arc].face_b));
+      axes_.push_back(Vec3d(data_.arcs[arc].line.axis));
     }
     const double cosine = data_.radius / distance, sine = std::sqrt(1 - cosine * cosine);
     const Vec3d z = to_eye / distance;
@@ -148,7 +152,7 @@ class Outline {
       Vec3d from = normal_at(part.from);
       for (int i = 1; i <= steps; ++i) {
         const Vec3d to = normal_at(part.from + (part.to - part.from) * i / steps);
-        emit(center + from * data_.radius, center + to * data_.radius, from, to, {});
+        emit(center + from * data_.radius, center + to * data_.radius, from, to);
         from = to;
       }
     }
@@ -197,7 +201,8 @@ class Outline {
   Vec3d eye_;  // in the rounding's space
   std::vector<RoundedTangent>& out_;
   Vec3d center_;
-  std::vector<Vec3d> normals_;  // of the faces beside what is added
+  // Of the faces beside what is added, and of the edges between them.
+  std::vector<Vec3d> normals_, axes_;
   std::vector<bool> arc_is_crossed_;
 };
 

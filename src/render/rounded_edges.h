@@ -6,10 +6,10 @@
 //            (tests/render/rounded_edges_test.cpp)
 // Limits     beside concave edges, and where roundings end in caps, a line may go on for up to a radius
 // Legend     r radius; c centre or axis point; n outward normal; e eye: on the outline n·(e − c) = r
-// Derivation A ray that touches the outline at c + r n in direction d leaves the void by a face of normal m, whose plane
-//            is m·(x − c) = r, after r (1 − m·n) / (m·d); of several the first. The void of a touching solid is at most
-//            as wide as two tangents r tan(θ/2), θ the angle between the faces; across the axis, the ray advances by
-//            |d − (d·axis) axis|.
+// Derivation A ray that touches the outline at c + r n in direction d leaves the void by a face of normal m, whose
+//            plane is m·(x − c) = r, after r (1 − m·n) / (m·d); of several the first. The void of a touching solid is
+//            at most as wide as two tangents r tan(θ/2), θ the angle between the faces; across the axis of an edge, the
+//            ray advances by |d − (d·axis) axis|.
 // Source     Bala, Walter, Greenberg (2003), §6.1, whose objects are meshes; Courtin et al., §3, for the surface
 #pragma once
 
