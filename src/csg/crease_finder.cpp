@@ -217,6 +217,7 @@ class CellCreases {
       found->a = a + (b - a) * t0;
       found->b = a + (b - a) * t1;
       found->cell = cell_;
+      found->middle = on.value_or(p);
       if (found->kind == CreaseSegment::Kind::sharp && !are_sides_flat(*found, through)) {
         found->kind = CreaseSegment::Kind::contact;
       }

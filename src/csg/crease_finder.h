@@ -34,6 +34,7 @@ struct CreaseSegment {
   Vec3d a, b;
   Kind kind = Kind::contact;
   std::uint32_t cell = 0;
+  Vec3d middle;                 // of the curve, where a and b are the ends of a chord
   std::array<Vec3d, 2> normal;  // outward, of the two sides; contact: none
 };
 

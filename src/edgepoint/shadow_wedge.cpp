@@ -187,8 +187,9 @@ class Meeting {
     const double c = plane.at(Vec3d(corners[2]));
     return std::min(std::min(a, b), c) > surely_ || std::max(std::max(a, b), c) < -surely_;
   }
-  // Appends where the wedge meets the face.
-  void collect_pieces(std::uint32_t face, std::vector<EventPiece>& out) const {
+  // Appends where the wedge meets the face, and what of it roundings have taken.
+  void collect_pieces(std::uint32_t face, std::vector<EventPiece>& out,
+                      std::vector<EventPiece>& taken) const {
     if (receiver_.is_blocker && (face == event_.faces[0] || face == event_.faces[1])) return;
     const Triangle& t = mesh_.triangles[face];
     std::array<double, 3> side;
@@ -200,8 +201,8 @@ class Meeting {
     const std::size_t i = (k + 1) % 3, j = (k + 2) % 3;
     WedgePoint p = crossing(t, k, i, side), q = crossing(t, k, j, side);
     if (!clip_to_wedge(p, q) || is_hidden(face)) return;
-    if (event_.void_depth > 0 && receiver_.voids != nullptr && !receiver_.voids->of(face).empty()) {
-      collect_outside_voids(p, q, receiver_.voids->of(face), out);
+    if (receiver_.voids != nullptr && !receiver_.voids->of(face).empty()) {
+      split_at_voids(p, q, receiver_.voids->of(face), out, taken);
     } else if (const std::optional<EventPiece> found = piece_between(p, q)) {
       out.push_back(*found);
     }
@@ -245,11 +246,10 @@ class Meeting {
     const double t = side[v] / (side[v] - side[w]);
     return between(coordinates(triangle, v), coordinates(triangle, w), t);
   }
-  // What of the way from p to q roundings have not taken, or is far from the beginning: bands and distances are linear
-  // along it.
-  void collect_outside_voids(const WedgePoint& p, const WedgePoint& q,
-                             std::span<const FaceVoids::Band> bands,
-                             std::vector<EventPiece>& out) const {
+  // Bands and distances are linear on the way from p to q. What is taken near the beginning is left out.
+  void split_at_voids(const WedgePoint& p, const WedgePoint& q,
+                      std::span<const FaceVoids::Band> bands, std::vector<EventPiece>& out,
+                      std::vector<EventPiece>& taken) const {
     std::vector<double> cuts{0, 1};
     const auto cut_at_zero = [&](double at_p, double at_q) {
       if ((at_p > 0) != (at_q > 0)) cuts.push_back(at_p / (at_p - at_q));
@@ -263,30 +263,24 @@ class Meeting {
     const double unit = wedge_.parallel ? 1 : std::min(length(wedge_.r[0]), length(wedge_.r[1]));
     const double reach = event_.void_depth / unit;
     for (const double end : {begin - reach, begin + reach}) {
-      const auto above = [&](const WedgePoint& w) { return height_over(w, end); };
-      cut_at_zero(above(p), above(q));
+      cut_at_zero(height_over(p, end), height_over(q, end));
     }
     std::ranges::sort(cuts);
-    std::optional<double> from;
     for (std::size_t i = 0; i + 1 < cuts.size(); ++i) {
       const WedgePoint middle = between(p, q, (cuts[i] + cuts[i + 1]) / 2);
+      const bool is_taken = std::ranges::any_of(
+          bands, [&](const FaceVoids::Band& band) { return depth(band, middle) > 0; });
       const bool is_near =
           height_over(middle, begin - reach) > 0 && height_over(middle, begin + reach) < 0;
-      const bool taken = is_near && std::ranges::any_of(bands, [&](const FaceVoids::Band& band) {
-                           return depth(band, middle) > 0;
-                         });
-      if (!taken && !from) from = cuts[i];
-      if (taken && from) add_piece(between(p, q, *from), between(p, q, cuts[i]), out);
-      if (taken) from.reset();
+      if (is_taken && is_near) continue;
+      const std::optional<EventPiece> found =
+          piece_between(between(p, q, cuts[i]), between(p, q, cuts[i + 1]));
+      if (found) (is_taken ? taken : out).push_back(*found);
     }
-    if (from) add_piece(between(p, q, *from), q, out);
   }
   // Along the ray: farther than u.
   [[nodiscard]] double height_over(const WedgePoint& w, double u) const {
     return wedge_.parallel ? w.u - u : w.a + w.b - u;
-  }
-  void add_piece(const WedgePoint& p, const WedgePoint& q, std::vector<EventPiece>& out) const {
-    if (const std::optional<EventPiece> found = piece_between(p, q)) out.push_back(*found);
   }
   [[nodiscard]] std::optional<EventPiece> piece_between(const WedgePoint& p,
                                                         const WedgePoint& q) const {
@@ -384,7 +378,9 @@ void WedgeWalk::insert(const EventWedge& wedge, const ShadowEvent& event,
     for (std::uint32_t i = 0; i < next.faces; ++i) {
       if (meeting.misses(receiver.faces->corners()[next.first + i])) continue;
       met_.clear();
-      meeting.collect_pieces(receiver.faces->faces()[next.first + i], met_);
+      const std::size_t taken = taken_.size();
+      meeting.collect_pieces(receiver.faces->faces()[next.first + i], met_, taken_);
+      for (std::size_t k = taken; k < taken_.size(); ++k) taken_[k].receiver = index;
       for (EventPiece& piece : met_) {
         piece.item = next_item_++;
         piece.receiver = index;

@@ -83,6 +83,8 @@ class WedgeWalk {
   // What of the receiver meets the wedge, as pieces with the number `index`.
   void insert(const EventWedge& wedge, const ShadowEvent& event, const ShadowReceiver& receiver,
               std::uint32_t index, NearestPieces& pieces);
+  // Pieces where roundings have taken the receiver away: the surface is a little behind, or the event passes.
+  [[nodiscard]] std::vector<EventPiece>& taken() { return taken_; }
 
  private:
   struct Waiting {
@@ -92,7 +94,7 @@ class WedgeWalk {
   void push_boxes(const FaceNode& node, const std::array<float, 4>& u, float farthest);
 
   std::vector<Waiting> stack_;
-  std::vector<EventPiece> met_;
+  std::vector<EventPiece> met_, taken_;
   std::uint32_t next_item_ = 0;
 };
 

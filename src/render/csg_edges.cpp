@@ -42,8 +42,7 @@ CsgEdges::Found CsgEdges::find(Vec3d eye, int threads) const {
 std::vector<CsgEdges::Segment> CsgEdges::find_touched(Vec3d eye, int threads) const {
   std::vector<Segment> touched;
   for (const CreaseSegment& crease : creases_) {
-    const Vec3d p = (crease.a + crease.b) * 0.5;
-    const Vec3d step = normalize(p - eye) * probe_->reach();
+    const Vec3d p = crease.middle, step = normalize(p - eye) * probe_->reach();
     if (probe_->contains(crease.cell, p - step) || probe_->contains(crease.cell, p + step))
       continue;
     touched.push_back({crease.a, crease.b});

@@ -6,7 +6,10 @@
 #include <cstdint>
 #include <cstdio>
 #include <limits>
+#include <memory>
+#include <string>
 #include <utility>
+#include <variant>
 #include <vector>
 
 #include "arris/io.h"
@@ -156,9 +159,11 @@ Mesh make_l_mesh() {
   return mesh;
 }
 
-void print(const char* name, const Shadowed::Shares& s) {
-  std::printf("%s: changes %zu found %zu worst %.5f; edges %zu real %zu\n", name, s.changes,
-              s.found, s.worst, s.edges, s.real);
+// All changes are found, and so many edges are no more than that.
+void expect_found(const char* name, const Shadowed::Shares& shares, double real) {
+  EXPECT_GT(shares.changes, 20U) << name;
+  EXPECT_EQ(shares.found, shares.changes) << name << ": " << shares.worst;
+  EXPECT_GE(double(shares.real), real * double(shares.edges)) << name << ": " << shares.edges;
 }
 
 TEST(rounded_shadows, of_a_box_are_its_outline) {
@@ -173,7 +178,7 @@ TEST(rounded_shadows, of_a_box_are_its_outline) {
       place.translation.z = 3;
       const Shadowed shadowed(
           rounded_scene({{make_box_mesh(Vec3d{1, 0.8, 0.6}), place}}, 0.25, light), 8);
-      print("box", shadowed.measure(2e-3));
+      expect_found("box", shadowed.measure(2e-3), 1);
     }
   }
 }
@@ -181,20 +186,57 @@ TEST(rounded_shadows, of_a_box_are_its_outline) {
 TEST(rounded_shadows, of_an_l_and_of_blocks_that_touch) {
   for (const Light& light : lights()) {
     const Shadowed l(rounded_scene({{make_l_mesh(), {{}, {0, 0, 1}}}}, 0.15, light), 8);
-    print("L above", l.measure(2e-3));
+    expect_found("L above", l.measure(2e-3), 0.97);
     const Shadowed standing(rounded_scene({{make_l_mesh(), {{}, {0, 0, 0}}}}, 0.15, light), 8);
-    print("L standing", standing.measure(2e-3));
+    expect_found("L standing", standing.measure(2e-3), 0.97);
     const Shadowed two(rounded_scene({{make_box_mesh(Vec3d{1, 0.8, 0.6}), {{}, {-1, 0, 2}}},
                                       {make_box_mesh(Vec3d{1, 0.8, 0.6}), {{}, {1, 0, 2}}}},
                                      0.2, light),
                        8);
-    print("touching", two.measure(2e-3));
+    expect_found("touching", two.measure(2e-3), 0.8);
     const Shadowed stack(rounded_scene({{make_box_mesh(Vec3d{1, 0.8, 0.6}), {{}, {0, 0, 0.6}}},
                                         {make_box_mesh(Vec3d{0.7, 0.8, 0.6}), {{}, {0, 0, 1.8}}}},
                                        0.2, light),
                          8);
-    print("stack", stack.measure(2e-3));
+    expect_found("stack", stack.measure(2e-3), 0.75);
   }
+}
+
+// Of drilled, cut and united solids, in front of a floor that is a mesh.
+TEST(csg_shadows, on_a_floor_are_found) {
+  CsgRandom random(5);
+  for (const Light& light : lights()) {
+    Shadowed::Shares all;
+    for (int i = 0; i < 12; ++i) {
+      Scene scene = rounded_scene({}, 0, light);
+      Object object;
+      object.name = "solid";
+      object.csg = CsgId{0};
+      object.world_from_object.translation = {0, 0, 3};
+      CsgTree tree = random_tree(random, 2);
+      while (scene.materials.size() < tree.leaves.size()) {
+        scene.materials.push_back(make_lambert(0.5F));
+      }
+      scene.csg_trees.push_back(std::move(tree));
+      scene.objects.insert(scene.objects.begin(), object);
+      const Shadowed::Shares one = Shadowed(std::move(scene), 6).measure(5e-3);
+      all.changes += one.changes;
+      all.found += one.found;
+      all.edges += one.edges;
+      all.real += one.real;
+      all.worst = std::max(all.worst, one.worst);
+    }
+    std::printf("csg: changes %zu found %zu worst %.5f; edges %zu real %zu\n", all.changes,
+                all.found, all.worst, all.edges, all.real);
+  }
+}
+
+// The stones of an arch: visibility of the sun changes nowhere on the lawn but along edges that are found.
+TEST(rounded_shadows, of_an_arch_are_found) {
+  Scene scene = load_scene(std::string(ARRIS_SOURCE_DIR) + "/examples/scenes/arch.toml");
+  std::rotate(scene.objects.begin(), scene.objects.begin() + 1, scene.objects.end());
+  const Shadowed arch(std::move(scene), 15);
+  expect_found("arch", arch.measure(0.012), 0);
 }
 
 }  // namespace
