@@ -31,7 +31,7 @@ constexpr double kOneDirection = radians(0.05);
 struct Active {
   std::uint32_t surface;
   Box3d box;
-  std::vector<std::uint32_t> leaves;
+  std::vector<std::uint32_t> patches;
 };
 
 // How the solid lies round a point of a curve, in the plane across it.
@@ -115,7 +115,7 @@ class CellCreases {
       const Box3d part = intersection(patch.box, box);
       const auto [at, is_new] = active.insert({patch.surface, {patch.surface, part, {}}});
       if (!is_new) at->second.box = hull(at->second.box, part);
-      at->second.leaves.push_back(patch.leaf);
+      at->second.patches.push_back(i);
     }
     std::vector<Active> out;
     for (auto& [surface, a] : active) out.push_back(std::move(a));
@@ -145,27 +145,49 @@ class CellCreases {
     }
   }
 
-  // Pieces of one rounded leaf meet smoothly; triangles of one mesh along edges that are known.
   [[nodiscard]] bool may_meet(const Active& a, const Active& b) const {
     if (intersection(a.box, b.box).is_empty()) return false;
-    for (const std::uint32_t one : a.leaves) {
-      for (const std::uint32_t two : b.leaves) {
-        if (one != two) return true;
-        const CsgShape& shape = probe_.solid().leaf(one).shape;
-        if (!std::holds_alternative<RoundedLeaf>(shape) &&
-            !std::holds_alternative<MeshLeaf>(shape)) {
-          return true;
-        }
+    for (const std::uint32_t one : a.patches) {
+      for (const std::uint32_t two : b.patches) {
+        if (patches_meet(patches_.patches()[one], patches_.patches()[two])) return true;
       }
     }
     return false;
+  }
+  // Pieces of one rounded leaf meet smoothly, triangles of one mesh along edges that are known, what the edges of one
+  // region sweep where these do.
+  [[nodiscard]] bool patches_meet(const SmoothPatch& a, const SmoothPatch& b) const {
+    if (a.leaf != b.leaf) return true;
+    const auto share_end = [](const RegionEdge& e, const RegionEdge& f) {
+      return e.a == f.a || e.a == f.b || e.b == f.a || e.b == f.b;
+    };
+    const CsgShape& shape = probe_.solid().leaf(a.leaf).shape;
+    if (const auto* revolution = std::get_if<RevolutionLeaf>(&shape)) {
+      const std::vector<RegionEdge>& edges = revolution->region.edges();
+      return share_end(edges[a.face], edges[b.face]);
+    }
+    if (const auto* prism = std::get_if<PrismLeaf>(&shape)) {
+      const std::vector<RegionEdge>& edges = prism->region.edges();
+      return a.face < 2 || b.face < 2 || share_end(edges[a.face - 2], edges[b.face - 2]);
+    }
+    return !std::holds_alternative<RoundedLeaf>(shape) && !std::holds_alternative<MeshLeaf>(shape);
+  }
+
+  [[nodiscard]] bool may_hold_surface(const Active& active, const Box3d& box) const {
+    return std::ranges::any_of(active.patches, [&](std::uint32_t i) {
+      const SmoothPatch& patch = patches_.patches()[i];
+      return may_hold(patch, box);
+    });
   }
 
   void add_curve(const Active& a, const Active& b, std::span<const std::uint32_t> near) {
     const SurfaceCurve curve(patches_.surface(a.surface), patches_.surface(b.surface),
                              probe_.size());
     pieces_.clear();
-    curve.collect_pieces(intersection(a.box, b.box), pieces_);
+    curve.collect_pieces(
+        intersection(a.box, b.box),
+        [&](const Box3d& box) { return may_hold_surface(a, box) && may_hold_surface(b, box); },
+        pieces_);
     const std::uint32_t through[] = {a.surface, b.surface};
     for (const SurfaceCurve::Piece& piece : pieces_) {
       add_segment(piece.a, piece.b, {through, 2}, near, [&](Vec3d p) { return curve.nearest(p); });
@@ -195,6 +217,10 @@ class CellCreases {
       found->a = a + (b - a) * t0;
       found->b = a + (b - a) * t1;
       found->cell = cell_;
+      found->middle = on.value_or(p);
+      if (found->kind == CreaseSegment::Kind::sharp && !are_sides_flat(*found, through)) {
+        found->kind = CreaseSegment::Kind::contact;
+      }
       const bool goes_on = out_.size() > before && out_.back().kind == found->kind &&
                            length(found->a - out_.back().b) <= kShortStretch * length(b - a);
       if (goes_on) {
@@ -203,6 +229,17 @@ class CellCreases {
         out_.push_back(*found);
       }
     }
+  }
+
+  // Whether normals at the middle stand for the whole of it.
+  [[nodiscard]] bool are_sides_flat(const CreaseSegment& crease,
+                                    std::span<const std::uint32_t> through) const {
+    static const double kCosine = std::cos(kSideTurn);
+    return std::ranges::all_of(through, [&](std::uint32_t surface) {
+      const Vec3d a = patches_.surface(surface).gradient(crease.a);
+      const Vec3d b = patches_.surface(surface).gradient(crease.b);
+      return dot(a, b) > kCosine * length(a) * length(b);
+    });
   }
 
   [[nodiscard]] std::optional<CreaseSegment> classify(Vec3d p, Vec3d along,

@@ -29,11 +29,12 @@ struct CreaseSegment {
   enum class Kind : std::uint8_t {
     soft,     // an edge where one of its two sides faces the eye and the other doesn't
     sharp,    // an edge where one of its two sides faces the eye
-    contact,  // always an edge: more than two pieces of surface meet
+    contact,  // always an edge: more than two pieces of surface meet, or they turn along it
   };
   Vec3d a, b;
   Kind kind = Kind::contact;
   std::uint32_t cell = 0;
+  Vec3d middle;                 // of the curve, where a and b are the ends of a chord
   std::array<Vec3d, 2> normal;  // outward, of the two sides; contact: none
 };
 
@@ -41,6 +42,8 @@ struct CreaseSegment {
 inline constexpr double kSoftTurn = radians(2);
 inline constexpr double kNoTurn = radians(0.2);
 inline constexpr double kChordTurn = radians(6);
+// Along a segment that isn't always drawn no side turns by more.
+inline constexpr double kSideTurn = radians(8);
 inline constexpr double kShortChord = 5e-4;
 inline constexpr double kTangent = radians(1);
 

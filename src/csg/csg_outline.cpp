@@ -17,11 +17,14 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 // Around a circle or a ring.
 constexpr int kSteps = 64;
-constexpr int kWallSteps = 16;
+constexpr int kWallSteps = 8;
+constexpr double kInset = 1e-6;  // of a stretch: its very ends may be beyond the wall's
 // Where a curve enters or leaves the solid's surface: halvings of a step.
 constexpr int kHalvings = 10;
-// A step of a torus's outline longer than this part of the torus is halved, so often.
+// Steps round a torus or a wall that are longer than the first part of it, or farther from the curve than the second,
+// are halved, at most so often.
 constexpr double kLongStep = 0.1;
+constexpr double kOffCurve = 5e-4;
 constexpr int kMostHalvings = 6;
 
 // The part of a line in a box.
@@ -106,7 +109,23 @@ class PatchOutline {
       if ((h0 > 0) == (h1 > 0)) return std::nullopt;
       return low + (high - low) * (h0 / (h0 - h1));
     };
-    add_curve(at, 0, 1, kWallSteps, Sides::any);
+    // Lines meet the plane between where their lower and their upper ends do, which move along straight lines.
+    std::array<double, 4> ends{0, 0, 0, 1};
+    for (std::size_t high = 0; high < 2; ++high) {
+      const auto value = [&](double u) {
+        const Vec2d p{edge.a.x + (edge.b.x - edge.a.x) * u, edge.a.y + (edge.b.y - edge.a.y) * u};
+        const Vec2d s = high == 1 ? prism.shape.scale_high : Vec2d{1, 1};
+        const double z = high == 1 ? prism.shape.z_high : prism.shape.z_low;
+        return polar.value(transform_point(object_from_primitive, {p.x * s.x, p.y * s.y, z}));
+      };
+      const double v0 = value(0), v1 = value(1);
+      if ((v0 > 0) != (v1 > 0)) ends[high + 1] = v0 / (v0 - v1);
+    }
+    std::ranges::sort(ends);
+    for (std::size_t i = 0; i + 1 < ends.size(); ++i) {
+      const double inset = (ends[i + 1] - ends[i]) * kInset;
+      if (inset > 0) add_curve(at, ends[i] + inset, ends[i + 1] - inset, kWallSteps, Sides::any);
+    }
   }
 
  private:
@@ -227,11 +246,17 @@ class PatchOutline {
     return {t, p, boundary_cell(p, sides)};
   }
   template <class At>
+  [[nodiscard]] bool is_coarse(const At& at, const Place& a, const Place& b) const {
+    if (!a.p || !b.p) return true;
+    const double size = length(patch_.box.high - patch_.box.low);
+    if (length(*a.p - *b.p) > kLongStep * size) return true;
+    const std::optional<Vec3d> middle = at((a.t + b.t) / 2);
+    return !middle || length(*middle - (*a.p + *b.p) * 0.5) > kOffCurve * size;
+  }
+  template <class At>
   void add_step(const At& at, Place a, Place b, Sides sides, int halvings) {
     if (!a.cell && !b.cell) return;
-    const bool is_long = a.p && b.p && sides == Sides::any && halvings > 0 &&
-                         length(*a.p - *b.p) > kLongStep * length(patch_.box.high - patch_.box.low);
-    if (is_long) {
+    if (sides == Sides::any && halvings > 0 && is_coarse(at, a, b)) {
       const Place middle = place(at, (a.t + b.t) / 2, sides);
       add_step(at, a, middle, sides, halvings - 1);
       add_step(at, middle, b, sides, halvings - 1);

@@ -203,12 +203,13 @@ struct SmoothPatches::Adder {
   }
   [[nodiscard]] const Box3d& bounds() const { return solid.leaf(leaf).bounds; }
 
-  std::uint32_t add_patch(std::uint32_t surface, const Box3d& box) const {
+  std::uint32_t add_patch(std::uint32_t surface, const Box3d& box, std::uint32_t face = 0) const {
     const double size = max_component(max(max(box.high, -box.low), Vec3d(0)));
     const Vec3d slack(std::isfinite(size) ? kBoxSlack * size : 0);
     out.patches_.push_back(
         {surface,
          leaf,
+         face,
          intersection(intersection({box.low - slack, box.high + slack}, bounds()), solid.bounds()),
          {}});
     return std::uint32_t(out.patches_.size() - 1);
@@ -217,10 +218,10 @@ struct SmoothPatches::Adder {
     out.surfaces_.emplace_back(std::move(form));
     return std::uint32_t(out.surfaces_.size() - 1);
   }
-  void add_quadric(std::uint32_t quadric, const Box3d& box,
-                   std::vector<CsgHalfSpace> within) const {
+  void add_quadric(std::uint32_t quadric, const Box3d& box, std::vector<CsgHalfSpace> within,
+                   std::uint32_t face = 0) const {
     out.curved_.push_back(
-        {solid.surfaces().quadrics()[quadric], add_patch(quadric_surface(quadric), box)});
+        {solid.surfaces().quadrics()[quadric], add_patch(quadric_surface(quadric), box, face)});
     out.patches_.back().within = std::move(within);
   }
   void add_rounding(const CsgQuadric& quadric, const Box3d& box,
@@ -248,7 +249,7 @@ struct SmoothPatches::Adder {
   }
   void operator()(const PrismLeaf& prism) const {
     add_patch(prism.low.plane, bounds());
-    add_patch(prism.high.plane, bounds());
+    add_patch(prism.high.plane, bounds(), 1);
     const Affine3d object_from_primitive = inverse(prism.primitive_from_object);
     const auto at = [&](Vec2d p, bool high) {
       const Vec2d s = high ? prism.shape.scale_high : Vec2d{1, 1};
@@ -260,9 +261,9 @@ struct SmoothPatches::Adder {
       const Box3d box =
           box_of_points({at(e.a, false), at(e.b, false), at(e.a, true), at(e.b, true)});
       if (prism.walls.empty()) {
-        out.walls_.push_back({add_patch(add_surface(wall_form(prism, e)), box), leaf, i});
+        out.walls_.push_back({add_patch(add_surface(wall_form(prism, e)), box, i + 2), leaf, i});
       } else {
-        add_patch(prism.walls[i].plane, box);
+        add_patch(prism.walls[i].plane, box, i + 2);
       }
     }
   }
@@ -274,11 +275,12 @@ struct SmoothPatches::Adder {
       const double low = std::min(e.a.y, e.b.y), high = std::max(e.a.y, e.b.y);
       const Box3d box = map_box(object_from_primitive, {{-r, -r, low}, {r, r, high}});
       if (const auto* ring = std::get_if<RevolutionLeaf::Ring>(&revolution.swept[i])) {
-        add_patch(ring->plane.plane, box);
+        add_patch(ring->plane.plane, box, i);
       } else if (const auto* band = std::get_if<RevolutionLeaf::Band>(&revolution.swept[i])) {
         add_quadric(band->quadric, box,
                     {map_to(revolution.primitive_from_object, {{0, 0, 1}, high}),
-                     map_to(revolution.primitive_from_object, {{0, 0, -1}, -low})});
+                     map_to(revolution.primitive_from_object, {{0, 0, -1}, -low})},
+                    i);
       }
     }
   }

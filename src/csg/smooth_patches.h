@@ -52,6 +52,7 @@ class SmoothSurface {
 
 struct SmoothPatch {
   std::uint32_t surface = 0, leaf = 0;
+  std::uint32_t face = 0;            // of prisms and revolutions
   Box3d box;                         // holds it
   std::vector<CsgHalfSpace> within;  // and all of these; normals not unit
 };

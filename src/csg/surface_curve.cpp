@@ -188,12 +188,14 @@ SurfaceCurve::Try SurfaceCurve::try_box(const Box3d& box) const {
   return try_line(box, *p);
 }
 
-void SurfaceCurve::collect_pieces(const Box3d& box, std::vector<Piece>& out) const {
+void SurfaceCurve::collect_pieces(const Box3d& box,
+                                  const std::function<bool(const Box3d&)>& may_hold,
+                                  std::vector<Piece>& out) const {
   std::vector<Box3d> stack{box};
   while (!stack.empty()) {
     const Box3d now = stack.back();
     stack.pop_back();
-    if (misses(now)) continue;
+    if (misses(now) || !may_hold(now)) continue;
     const Try tried = try_box(now);
     if (tried.outcome == Try::Outcome::one) out.push_back(tried.piece);
     if (tried.outcome != Try::Outcome::halve) continue;

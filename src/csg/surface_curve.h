@@ -4,6 +4,7 @@
 #pragma once
 
 #include <array>
+#include <functional>
 #include <optional>
 #include <vector>
 
@@ -19,7 +20,9 @@ class SurfaceCurve {
   // size: the solid's; chords shorter than `least` need not be straight.
   SurfaceCurve(const SmoothSurface& s0, const SmoothSurface& s1, double size);
 
-  void collect_pieces(const Box3d& box, std::vector<Piece>& out) const;
+  // may_hold(box): whether what is looked for may be in a box.
+  void collect_pieces(const Box3d& box, const std::function<bool(const Box3d&)>& may_hold,
+                      std::vector<Piece>& out) const;
   // The point of the curve near p.
   [[nodiscard]] std::optional<Vec3d> nearest(Vec3d p) const;
   [[nodiscard]] Vec3d along(Vec3d p) const;  // not unit

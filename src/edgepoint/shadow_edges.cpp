@@ -42,11 +42,17 @@ class EventTracer {
         add_shown(*wedge, event, p, *shown);
       }
     }
+    for (const EventPiece& p : walk_.taken()) {
+      if (const auto shown = split_at(p, wedge->begin + wedge->contact).below) {
+        add_unless_behind(*wedge, event, p, *shown);
+      }
+    }
   }
 
  private:
   void find_nearest(const EventWedge& wedge, const ShadowEvent& event) {
     pieces_.clear();
+    walk_.taken().clear();
     for (std::uint32_t i = 0; i < receivers_.size(); ++i) {
       walk_.insert(wedge, event, receivers_[i], i, pieces_);
     }
@@ -64,6 +70,18 @@ class EventTracer {
       covered += hidden->s1 - hidden->s0;
     }
     return covered < 1 - kShortestPiece;
+  }
+  // Adds the stretch of a piece where a receiver is rounded away, but for what lies behind the nearest pieces. Where
+  // the event passes through the void it goes on to those; which of both it does is left open.
+  void add_unless_behind(const EventWedge& wedge, const ShadowEvent& event, const EventPiece& p,
+                         Stretch shown) {
+    for (const EventPiece& near : pieces_.pieces()) {
+      const double s0 = std::max(near.s0, shown.s0), s1 = std::min(near.s1, shown.s1);
+      if (s0 >= s1 || near.nearness((s0 + s1) / 2) <= p.nearness((s0 + s1) / 2)) continue;
+      add_shown(wedge, event, p, {shown.s0, s0});
+      shown.s0 = s1;
+    }
+    add_shown(wedge, event, p, shown);
   }
   // Adds what of the stretch is not hidden.
   void add_shown(const EventWedge& wedge, const ShadowEvent& event, const EventPiece& p,

@@ -122,15 +122,24 @@ std::array<float, 4> nearest_u(const LocalForms& forms, const FaceNode& node) {
   return u;
 }
 
-// Where the plane meets the side of a triangle.
+// Where the plane meets the side of a triangle, and there which of it.
 struct WedgePoint {
   double a, b, u;
+  Vec2d place{};  // barycentric weights of the triangle's second and third corner
 };
+
+// Part t of the way from p to q.
+WedgePoint between(const WedgePoint& p, const WedgePoint& q, double t) {
+  return {p.a + (q.a - p.a) * t,
+          p.b + (q.b - p.b) * t,
+          p.u + (q.u - p.u) * t,
+          {p.place.x + (q.place.x - p.place.x) * t, p.place.y + (q.place.y - p.place.y) * t}};
+}
 
 // Moves `from` to where `coordinate` is zero between both.
 void clip_to(WedgePoint& from, const WedgePoint& to, double WedgePoint::*coordinate) {
   const double t = from.*coordinate / (from.*coordinate - to.*coordinate);
-  from = {from.a + (to.a - from.a) * t, from.b + (to.b - from.b) * t, from.u + (to.u - from.u) * t};
+  from = between(from, to, t);
   from.*coordinate = 0;
 }
 
@@ -178,24 +187,25 @@ class Meeting {
     const double c = plane.at(Vec3d(corners[2]));
     return std::min(std::min(a, b), c) > surely_ || std::max(std::max(a, b), c) < -surely_;
   }
-  [[nodiscard]] std::optional<EventPiece> piece(std::uint32_t face) const {
-    if (receiver_.is_blocker && (face == event_.faces[0] || face == event_.faces[1])) {
-      return std::nullopt;
-    }
+  // Appends where the wedge meets the face, and what of it roundings have taken.
+  void collect_pieces(std::uint32_t face, std::vector<EventPiece>& out,
+                      std::vector<EventPiece>& taken) const {
+    if (receiver_.is_blocker && (face == event_.faces[0] || face == event_.faces[1])) return;
     const Triangle& t = mesh_.triangles[face];
     std::array<double, 3> side;
     for (std::size_t k = 0; k < 3; ++k) side[k] = side_of(t[k]);
     const bool front0 = side[0] >= 0, front1 = side[1] >= 0, front2 = side[2] >= 0;
-    if (front0 == front1 && front1 == front2) return std::nullopt;
+    if (front0 == front1 && front1 == front2) return;
     // The corner that is alone on its side.
     const std::size_t k = front1 == front2 ? 0 : front0 == front2 ? 1 : 2;
     const std::size_t i = (k + 1) % 3, j = (k + 2) % 3;
-    WedgePoint p = crossing(t[k], t[i], side[k], side[i]);
-    WedgePoint q = crossing(t[k], t[j], side[k], side[j]);
-    if (!clip_to_wedge(p, q)) return std::nullopt;
-    const std::optional<EventPiece> found = piece_between(p, q);
-    if (!found || is_hidden(face)) return std::nullopt;
-    return found;
+    WedgePoint p = crossing(t, k, i, side), q = crossing(t, k, j, side);
+    if (!clip_to_wedge(p, q) || is_hidden(face)) return;
+    if (receiver_.voids != nullptr && !receiver_.voids->of(face).empty()) {
+      split_at_voids(p, q, receiver_.voids->of(face), out, taken);
+    } else if (const std::optional<EventPiece> found = piece_between(p, q)) {
+      out.push_back(*found);
+    }
   }
 
  private:
@@ -218,25 +228,59 @@ class Meeting {
     if (is_end(v, 0) || is_end(v, 1)) return 0;
     return forms_.object[0].at(Vec3d(mesh_.vertices[v]));
   }
-  [[nodiscard]] WedgePoint coordinates(std::uint32_t v) const {
+  [[nodiscard]] WedgePoint coordinates(const Triangle& triangle, std::size_t corner) const {
+    const std::uint32_t v = triangle[corner];
+    const Vec2d place{corner == 1 ? 1.0 : 0.0, corner == 2 ? 1.0 : 0.0};
     const bool first = is_end(v, 0), second = is_end(v, 1);
-    if (first && second) return {0, 0, 0};
+    if (first && second) return {0, 0, 0, place};
     const double u = wedge_.parallel ? 0 : 1;
-    if (first) return {1, 0, u};
-    if (second) return {0, 1, u};
+    if (first) return {1, 0, u, place};
+    if (second) return {0, 1, u, place};
     const Vec3d p(mesh_.vertices[v]);
-    return {forms_.object[1].at(p), forms_.object[2].at(p), forms_.object[3].at(p)};
+    return {forms_.object[1].at(p), forms_.object[2].at(p), forms_.object[3].at(p), place};
   }
   // Same for both triangles at the side: in the order of the vertices.
-  [[nodiscard]] WedgePoint crossing(std::uint32_t v, std::uint32_t w, double side_v,
-                                    double side_w) const {
-    if (w < v) {
-      std::swap(v, w);
-      std::swap(side_v, side_w);
+  [[nodiscard]] WedgePoint crossing(const Triangle& triangle, std::size_t v, std::size_t w,
+                                    const std::array<double, 3>& side) const {
+    if (triangle[w] < triangle[v]) std::swap(v, w);
+    const double t = side[v] / (side[v] - side[w]);
+    return between(coordinates(triangle, v), coordinates(triangle, w), t);
+  }
+  // Bands and distances are linear on the way from p to q. What is taken near the beginning is left out.
+  void split_at_voids(const WedgePoint& p, const WedgePoint& q,
+                      std::span<const FaceVoids::Band> bands, std::vector<EventPiece>& out,
+                      std::vector<EventPiece>& taken) const {
+    std::vector<double> cuts{0, 1};
+    const auto cut_at_zero = [&](double at_p, double at_q) {
+      if ((at_p > 0) != (at_q > 0)) cuts.push_back(at_p / (at_p - at_q));
+    };
+    const auto depth = [](const FaceVoids::Band& band, const WedgePoint& w) {
+      return band.c0 + band.cu * w.place.x + band.cv * w.place.y;
+    };
+    for (const FaceVoids::Band& band : bands) cut_at_zero(depth(band, p), depth(band, q));
+    // Of a perspective wedge u is 1 at the beginning, and lengths are those of its rays.
+    const double begin = wedge_.parallel ? 0 : 1;
+    const double unit = wedge_.parallel ? 1 : std::min(length(wedge_.r[0]), length(wedge_.r[1]));
+    const double reach = event_.void_depth / unit;
+    for (const double end : {begin - reach, begin + reach}) {
+      cut_at_zero(height_over(p, end), height_over(q, end));
     }
-    const WedgePoint p = coordinates(v), q = coordinates(w);
-    const double t = side_v / (side_v - side_w);
-    return {p.a + (q.a - p.a) * t, p.b + (q.b - p.b) * t, p.u + (q.u - p.u) * t};
+    std::ranges::sort(cuts);
+    for (std::size_t i = 0; i + 1 < cuts.size(); ++i) {
+      const WedgePoint middle = between(p, q, (cuts[i] + cuts[i + 1]) / 2);
+      const bool is_taken = std::ranges::any_of(
+          bands, [&](const FaceVoids::Band& band) { return depth(band, middle) > 0; });
+      const bool is_near =
+          height_over(middle, begin - reach) > 0 && height_over(middle, begin + reach) < 0;
+      if (is_taken && is_near) continue;
+      const std::optional<EventPiece> found =
+          piece_between(between(p, q, cuts[i]), between(p, q, cuts[i + 1]));
+      if (found) (is_taken ? taken : out).push_back(*found);
+    }
+  }
+  // Along the ray: farther than u.
+  [[nodiscard]] double height_over(const WedgePoint& w, double u) const {
+    return wedge_.parallel ? w.u - u : w.a + w.b - u;
   }
   [[nodiscard]] std::optional<EventPiece> piece_between(const WedgePoint& p,
                                                         const WedgePoint& q) const {
@@ -333,12 +377,16 @@ void WedgeWalk::insert(const EventWedge& wedge, const ShadowEvent& event,
     if (next.nearest_u > farthest) continue;
     for (std::uint32_t i = 0; i < next.faces; ++i) {
       if (meeting.misses(receiver.faces->corners()[next.first + i])) continue;
-      std::optional<EventPiece> piece = meeting.piece(receiver.faces->faces()[next.first + i]);
-      if (!piece) continue;
-      piece->item = next_item_++;
-      piece->receiver = index;
-      pieces.insert(*piece);
-      farthest = farthest_u(wedge, pieces, scale);
+      met_.clear();
+      const std::size_t taken = taken_.size();
+      meeting.collect_pieces(receiver.faces->faces()[next.first + i], met_, taken_);
+      for (std::size_t k = taken; k < taken_.size(); ++k) taken_[k].receiver = index;
+      for (EventPiece& piece : met_) {
+        piece.item = next_item_++;
+        piece.receiver = index;
+        pieces.insert(piece);
+      }
+      if (!met_.empty()) farthest = farthest_u(wedge, pieces, scale);
     }
     if (next.faces == 0)
       push_boxes(nodes[next.first], nearest_u(meeting.forms(), nodes[next.first]), farthest);

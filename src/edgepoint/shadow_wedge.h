@@ -16,6 +16,7 @@
 #include <array>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "edgepoint/face_tree.h"
@@ -54,11 +55,27 @@ std::optional<EventWedge> make_wedge(const ShadowEvent& event);
 // Of an EV event, from the vertex to the light's edge.
 std::optional<EventWedge> make_wedge_to_light(const ShadowEvent& event);
 
+// Where roundings have taken a mesh's faces away: at barycentric (u, v) of a face where c0 + cu u + cv v > 0 for one of
+// its bands.
+struct FaceVoids {
+  struct Band {
+    double c0 = 0, cu = 0, cv = 0;
+  };
+  std::vector<std::uint32_t> first;  // of each face, and one more
+  std::vector<Band> bands;
+
+  [[nodiscard]] std::span<const Band> of(std::uint32_t face) const {
+    if (face + 1 >= first.size()) return {};
+    return std::span(bands).subspan(first[face], first[face + 1] - first[face]);
+  }
+};
+
 struct ShadowReceiver {
   const FaceTree* faces = nullptr;
   Affine3d world_from_object;
   bool is_blocker =
       false;  // the same object as the blocker: faces beside the event's own edge are not met
+  const FaceVoids* voids = nullptr;  // none: sharp
 };
 
 class WedgeWalk {
@@ -66,6 +83,8 @@ class WedgeWalk {
   // What of the receiver meets the wedge, as pieces with the number `index`.
   void insert(const EventWedge& wedge, const ShadowEvent& event, const ShadowReceiver& receiver,
               std::uint32_t index, NearestPieces& pieces);
+  // Pieces where roundings have taken the receiver away: the surface is a little behind, or the event passes.
+  [[nodiscard]] std::vector<EventPiece>& taken() { return taken_; }
 
  private:
   struct Waiting {
@@ -75,6 +94,7 @@ class WedgeWalk {
   void push_boxes(const FaceNode& node, const std::array<float, 4>& u, float farthest);
 
   std::vector<Waiting> stack_;
+  std::vector<EventPiece> met_, taken_;
   std::uint32_t next_item_ = 0;
 };
 

@@ -91,6 +91,16 @@ void add_light_outlines(const Scene& scene, Vec3d eye, std::vector<WorldEdge>& e
   }
 }
 
+FaceVoids voids_of(const PreparedScene& prepared, std::uint32_t geometry) {
+  const Rounding::Data& data = prepared.rounding().geometries[geometry].rounding->data();
+  FaceVoids voids;
+  voids.first = data.band_begin;
+  voids.bands.reserve(data.bands.size());
+  for (const Band& b : data.bands)
+    voids.bands.push_back({double(b.c0), double(b.cu), double(b.cv)});
+  return voids;
+}
+
 }  // namespace
 
 struct EdgeObjects::MeshEdges {
@@ -169,6 +179,8 @@ EdgeObjects::~EdgeObjects() = default;
 void EdgeObjects::set_rounded(const PreparedScene& prepared, ObjectEdges& object) {
   object.rounded = find_rounded(prepared, object);
   object.rounded_between.clear();
+  object.voids = {};
+  if (!object.rounded.empty()) object.voids = voids_of(prepared, object.geometry);
   for (std::uint32_t e = 0; e < object.rounded.size(); ++e) {
     if (object.rounded[e] == RoundedEdge::no) continue;
     const MeshEdge& edge = object.mesh->mesh.edges[e];
@@ -316,7 +328,10 @@ std::optional<EdgeObjects::Parts> EdgeObjects::parts(const PreparedScene& prepar
   parts.tree = &o.mesh->tree;
   parts.faces = &o.mesh->faces;
   parts.world = &prepared.scene().objects[object].world_from_object;
-  if (!o.rounded.empty()) parts.rounding = &prepared.rounding().geometries[o.geometry];
+  if (!o.rounded.empty()) {
+    parts.rounding = &prepared.rounding().geometries[o.geometry];
+    parts.voids = &o.voids;
+  }
   parts.rounded_between = o.rounded_between;
   return parts;
 }

@@ -19,6 +19,7 @@
 #include "edgepoint/edge_raster.h"
 #include "edgepoint/edge_tree.h"
 #include "edgepoint/face_tree.h"
+#include "edgepoint/shadow_wedge.h"
 #include "render/csg_edges.h"
 #include "render/prepared_scene.h"
 
@@ -48,6 +49,7 @@ class EdgeObjects {
     const FaceTree* faces = nullptr;
     const Affine3d* world = nullptr;            // from the object
     const RoundedGeometry* rounding = nullptr;  // null: sharp
+    const FaceVoids* voids = nullptr;           // null: sharp
     // Pairs of faces, the lower first, whose edge is rounded; sorted.
     std::span<const std::pair<std::uint32_t, std::uint32_t>> rounded_between;
 
@@ -77,6 +79,7 @@ class EdgeObjects {
     std::uint32_t geometry = kNoGeometry;
     std::vector<RoundedEdge> rounded;  // of the mesh's edges; empty: none
     std::vector<std::pair<std::uint32_t, std::uint32_t>> rounded_between;  // Parts'
+    FaceVoids voids;                                                       // Parts'
   };
 
   void find_solids(const PreparedScene& prepared, int threads);

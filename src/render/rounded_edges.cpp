@@ -12,6 +12,8 @@ namespace {
 
 // A circle is drawn as chords of at most this angle: off by r/1000.
 constexpr double kStep = radians(5);
+// Rays almost along an edge would stay in its void for ever: they are followed for as many radii.
+constexpr double kFarthest = 100;
 // Of n·n_face: rounding of float positions.
 constexpr double kSlack = 1e-5;
 
@@ -22,7 +24,7 @@ struct Angles {
 class Outline {
  public:
   Outline(const Rounding::Data& data, const RoundedView& view, const Affine3d& world,
-          double world_radius, Vec3d eye, std::vector<WorldEdge>& out)
+          double world_radius, Vec3d eye, std::vector<RoundedTangent>& out)
       : data_(data),
         view_(view),
         world_(world),
@@ -48,10 +50,28 @@ class Outline {
     return Vec3d(data_.faces[face].normal);
   }
 
-  void emit(Vec3d a, Vec3d b) {
+  // na, nb: the normals there.
+  void emit(Vec3d a, Vec3d b, Vec3d na, Vec3d nb) {
     const Vec3d p = transform_point(world_, a + center_), q = transform_point(world_, b + center_);
     if (!is_seen_rounded(view_, world_radius_, (p + q) * 0.5)) return;
-    out_.push_back({Vec3f(p), Vec3f(q)});
+    const double depth = std::max(void_depth(a, na), void_depth(b, nb));
+    out_.push_back({{Vec3f(p), Vec3f(q)}, depth * (world_radius_ / data_.radius)});
+  }
+
+  // On both sides of a point where rays from the eye touch.
+  [[nodiscard]] double void_depth(Vec3d p, Vec3d n) const {
+    const Vec3d d = normalize(p - (eye_ - center_));
+    double before = kFarthest, after = kFarthest, least_cosine = 1;
+    for (const Vec3d& m : normals_) {
+      const double along = dot(m, d), way = (1 - dot(m, n)) / std::abs(along);
+      if (along != 0) (along > 0 ? after : before) = std::min(along > 0 ? after : before, way);
+      for (const Vec3d& other : normals_) least_cosine = std::min(least_cosine, dot(m, other));
+    }
+    const double tangent = std::sqrt((1 - least_cosine) / std::max(1 + least_cosine, 1e-9));
+    double across = 1;
+    for (const Vec3d& axis : axes_) across = std::min(across, length(d - axis * dot(d, axis)));
+    const double neighbor = 2 * tangent / std::max(across, 1 / kFarthest);
+    return data_.radius * std::min(std::max(before, after) + neighbor, kFarthest);
   }
 
   // Where along the axis the cylinder ends for a line at an offset from it: at a mitre in its slanted plane.
@@ -87,6 +107,8 @@ class Outline {
     const double cosine = data_.radius / distance, sine = std::sqrt(1 - cosine * cosine);
     const Vec3d x = across / distance, y = cross(axis, x);
     const Vec3d na = face_normal(arc.face_a), nb = face_normal(arc.face_b);
+    normals_ = {na, nb};
+    axes_ = {axis};
     bool crossed = false;
     for (const double side : {-1.0, 1.0}) {
       const Vec3d n = x * cosine + y * (side * sine);
@@ -96,7 +118,7 @@ class Outline {
       crossed = true;
       const Vec3d offset = n * data_.radius;
       const double t0 = end_of(arc, false, offset), t1 = end_of(arc, true, offset);
-      if (t0 < t1) emit(p0 + axis * t0 + offset, p0 + axis * t1 + offset);
+      if (t0 < t1) emit(p0 + axis * t0 + offset, p0 + axis * t1 + offset, n, n);
     }
     return crossed;
   }
@@ -111,6 +133,13 @@ class Outline {
     const Vec3d center(node.position), to_eye = eye - center;
     const double distance = length(to_eye);
     if (!any || distance <= data_.radius) return;
+    normals_.clear();
+    axes_.clear();
+    for (const std::uint32_t arc : links) {
+      normals_.push_back(face_normal(data_.arcs[arc].face_a));
+      normals_.push_back(face_normal(data_.arcs[arc].face_b));
+      axes_.push_back(Vec3d(data_.arcs[arc].line.axis));
+    }
     const double cosine = data_.radius / distance, sine = std::sqrt(1 - cosine * cosine);
     const Vec3d z = to_eye / distance;
     const Vec3d x = normalize(std::abs(z.x) < 0.6 ? cross(z, {1, 0, 0}) : cross(z, {0, 1, 0}));
@@ -123,7 +152,7 @@ class Outline {
       Vec3d from = normal_at(part.from);
       for (int i = 1; i <= steps; ++i) {
         const Vec3d to = normal_at(part.from + (part.to - part.from) * i / steps);
-        emit(center + from * data_.radius, center + to * data_.radius);
+        emit(center + from * data_.radius, center + to * data_.radius, from, to);
         from = to;
       }
     }
@@ -170,23 +199,32 @@ class Outline {
   Affine3d world_;  // from the rounding's space
   double world_radius_;
   Vec3d eye_;  // in the rounding's space
-  std::vector<WorldEdge>& out_;
+  std::vector<RoundedTangent>& out_;
   Vec3d center_;
+  // Of the faces beside what is added, and of the edges between them.
+  std::vector<Vec3d> normals_, axes_;
   std::vector<bool> arc_is_crossed_;
 };
 
 }  // namespace
 
-void find_rounded_outline(const RoundedGeometry& geometry, const RoundedView& view,
-                          std::vector<WorldEdge>& edges) {
+std::vector<RoundedTangent> find_rounded_tangents(const RoundedGeometry& geometry,
+                                                  const RoundedView& view) {
   const Rounding::Data& data = geometry.rounding->data();
   const Affine3d from_world =
       geometry.frame == nullptr ? Affine3d() : geometry.frame->rounding_from_world;
   const Affine3d world = inverse(from_world);
   const double scale = std::cbrt(std::abs(determinant(world.linear)));
+  std::vector<RoundedTangent> tangents;
   Outline outline(data, view, world, data.radius * scale, transform_point(from_world, view.eye),
-                  edges);
+                  tangents);
   for (const Solid& solid : data.solids) outline.add_solid(solid);
+  return tangents;
+}
+
+void find_rounded_outline(const RoundedGeometry& geometry, const RoundedView& view,
+                          std::vector<WorldEdge>& edges) {
+  for (const RoundedTangent& t : find_rounded_tangents(geometry, view)) edges.push_back(t.edge);
 }
 
 }  // namespace arris

@@ -6,6 +6,10 @@
 //            (tests/render/rounded_edges_test.cpp)
 // Limits     beside concave edges, and where roundings end in caps, a line may go on for up to a radius
 // Legend     r radius; c centre or axis point; n outward normal; e eye: on the outline n·(e − c) = r
+// Derivation A ray that touches the outline at c + r n in direction d leaves the void by a face of normal m, whose
+//            plane is m·(x − c) = r, after r (1 − m·n) / (m·d); of several the first. The void of a touching solid is
+//            at most as wide as two tangents r tan(θ/2), θ the angle between the faces; across the axis of an edge, the
+//            ray advances by |d − (d·axis) axis|.
 // Source     Bala, Walter, Greenberg (2003), §6.1, whose objects are meshes; Courtin et al., §3, for the surface
 #pragma once
 
@@ -26,6 +30,16 @@ struct RoundedView {
 
 void find_rounded_outline(const RoundedGeometry& geometry, const RoundedView& view,
                           std::vector<WorldEdge>& edges);
+
+// A piece of the outline, and how far rays from the eye that touch it go on through the void on either side, at most:
+// through the solid's own, and that of one that touches it there. Nothing of the sharp faces there is taken for a
+// surface.
+struct RoundedTangent {
+  WorldEdge edge;
+  double void_depth = 0;
+};
+std::vector<RoundedTangent> find_rounded_tangents(const RoundedGeometry& geometry,
+                                                  const RoundedView& view);
 
 // Whether a rounding of this radius is seen as one at a point of the world.
 inline bool is_seen_rounded(const RoundedView& view, double radius, Vec3d p) {

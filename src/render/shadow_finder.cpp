@@ -15,32 +15,47 @@ HomogeneousPoint from_object(const Affine3d& world, const HomogeneousPoint& ligh
   return transform(inverse(world), light);
 }
 
+Vec3d eye_of(const HomogeneousPoint& light, const Sphere& around) {
+  if (light.w > 0) return light.xyz / light.w;
+  return around.center + normalize(light.xyz) * (2 * around.radius * kFarAway);
+}
+
 // Events of edges of the mesh that the rounding has not taken, and those of its own outline.
 std::vector<ShadowEvent> rounded_events(const EdgeObjects::Parts& blocker,
                                         std::span<const ShadowEvent> of_mesh,
-                                        const HomogeneousPoint& light) {
+                                        const HomogeneousPoint& light, const Sphere& around) {
   std::vector<ShadowEvent> events;
   for (const ShadowEvent& event : of_mesh) {
     if (!blocker.is_rounded_between(event.faces[0], event.faces[1])) events.push_back(event);
   }
-  const double size = length(blocker.mesh->bounds_max - blocker.mesh->bounds_min);
-  const Vec3d eye =
-      light.w > 0 ? light.xyz / light.w
-                  : transform_point(*blocker.world,
-                                    (blocker.mesh->bounds_min + blocker.mesh->bounds_max) * 0.5) +
-                        normalize(light.xyz) * (size * kFarAway);
-  std::vector<WorldEdge> outline;
-  find_rounded_outline(*blocker.rounding, RoundedView{eye, {0, 0, 1}, -1}, outline);
-  for (const WorldEdge& edge : outline) {
+  const Vec3d eye = eye_of(light, around);
+  for (const RoundedTangent& tangent :
+       find_rounded_tangents(*blocker.rounding, RoundedView{eye, {0, 0, 1}, 0})) {
     ShadowEvent event;
-    event.origin = {Vec3d(edge.a), Vec3d(edge.b)};
+    event.origin = {Vec3d(tangent.edge.a), Vec3d(tangent.edge.b)};
+    event.light = {light, light};
+    event.void_depth = tangent.void_depth;
+    events.push_back(event);
+  }
+  return events;
+}
+
+// Of a solid of solids: its edges and outlines that rays of the light touch.
+std::vector<ShadowEvent> solid_events(const CsgEdges& solid, const Affine3d& world,
+                                      const HomogeneousPoint& light, const Sphere& around) {
+  std::vector<ShadowEvent> events;
+  for (const CsgEdges::Segment& s :
+       solid.find_touched(transform_point(inverse(world), eye_of(light, around)), 0)) {
+    ShadowEvent event;
+    event.origin = {transform_point(world, s.a), transform_point(world, s.b)};
     event.light = {light, light};
     events.push_back(event);
   }
   return events;
 }
 
-std::vector<ShadowEvent> find_events(const EdgeObjects::Parts& blocker, const ShadowLight& light) {
+std::vector<ShadowEvent> find_events(const EdgeObjects::Parts& blocker, const ShadowLight& light,
+                                     const Sphere& around) {
   if (const auto* area = std::get_if<ParallelogramLight>(&light)) {
     return transform(*blocker.world,
                      find_shadow_events(*blocker.tree, transform(inverse(*blocker.world), *area)));
@@ -48,7 +63,7 @@ std::vector<ShadowEvent> find_events(const EdgeObjects::Parts& blocker, const Sh
   const auto& point = std::get<HomogeneousPoint>(light);
   const std::vector<ShadowEvent> events = transform(
       *blocker.world, find_shadow_events(*blocker.tree, from_object(*blocker.world, point)));
-  return blocker.rounding == nullptr ? events : rounded_events(blocker, events, point);
+  return blocker.rounding == nullptr ? events : rounded_events(blocker, events, point, around);
 }
 
 }  // namespace
@@ -159,12 +174,19 @@ bool ShadowFinder::update(const PreparedScene& scene, const EdgeObjects& objects
     const auto& [light, blocker] = key;
     if (light >= lights->size()) continue;
     const std::optional<EdgeObjects::Parts> parts = objects.parts(scene, blocker);
-    if (!parts) continue;
-    if (!pair.events_known) pair.events = find_events(*parts, (*lights)[light]);
+    const CsgEdges* const solid = objects.solid(blocker);
+    const auto* const point = std::get_if<HomogeneousPoint>(&(*lights)[light]);
+    if (!parts && (solid == nullptr || point == nullptr)) continue;
+    if (!pair.events_known) {
+      const Sphere around = objects.bounding_sphere(scene, blocker);
+      const Affine3d& world = scene.scene().objects[blocker].world_from_object;
+      pair.events = parts ? find_events(*parts, (*lights)[light], around)
+                          : solid_events(*solid, world, *point, around);
+    }
     std::vector<ShadowReceiver> receivers;
     for (const std::uint32_t receiver : pair.receivers) {
       const std::optional<EdgeObjects::Parts> r = objects.parts(scene, receiver);
-      if (r) receivers.push_back({r->faces, *r->world, receiver == blocker});
+      if (r) receivers.push_back({r->faces, *r->world, receiver == blocker, r->voids});
     }
     pair.edges.clear();
     for (const ShadowEdge& edge : find_shadow_edges(pair.events, receivers)) {

@@ -104,6 +104,9 @@ class CsgPicture {
     return {dot(d, right_) / (dot(right_, right_) * z), dot(d, down_) / (dot(down_, down_) * z), z};
   }
   [[nodiscard]] int pixels() const { return pixels_; }
+  [[nodiscard]] Vec3d point(double x, double y, double depth) const {
+    return eye_ + (forward_ + right_ * x + down_ * y) * depth;
+  }
 
  private:
   static double size_of(const CsgSight& a, const CsgSight& b) {

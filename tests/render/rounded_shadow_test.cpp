@@ -1,0 +1,243 @@
+// Shadows of rounded solids: found edges against dense shadow rays.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <cstdio>
+#include <limits>
+#include <memory>
+#include <string>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "arris/io.h"
+#include "render/edge_objects.h"
+#include "render/prepared_scene.h"
+#include "render/shadow_finder.h"
+#include "support/csg_oracle.h"
+#include "support/render_scenes.h"
+
+namespace arris::test {
+namespace {
+
+// Light 0 and a floor at height 0 that is the last object.
+class Shadowed {
+ public:
+  Shadowed(Scene scene, double reach) : scene_(prepare_scene(std::move(scene))), reach_(reach) {
+    const auto count = std::uint32_t(scene_->scene().objects.size());
+    const EdgeObjects objects(*scene_, 0);
+    std::vector<ShadowTriple> triples;
+    for (std::uint32_t blocker = 0; blocker + 1 < count; ++blocker) {
+      for (std::uint32_t receiver = 0; receiver < count; ++receiver) {
+        triples.push_back({0, blocker, receiver});
+      }
+    }
+    ShadowFinder finder;
+    finder.add(triples);
+    while (!finder.update(*scene_, objects, 1'000'000)) {
+    }
+    edges_ = finder.edges();
+    light_ = std::get<HomogeneousPoint>(shadow_lights(*scene_)[0]);
+  }
+
+  [[nodiscard]] const std::vector<WorldEdge>& edges() const { return edges_; }
+  [[nodiscard]] bool sees_light(Vec3d p) const {
+    TraceRay ray;
+    ray.origin = Vec3f(p + Vec3d(0, 0, 1e-5));
+    const Vec3d to = light_.w > 0 ? light_.xyz / light_.w - p : light_.xyz;
+    ray.direction = normalize(Vec3f(to));
+    if (light_.w > 0) ray.t_max = float(length(to));
+    return !scene_->occluded(ray);
+  }
+  // From the floor's edges.
+  [[nodiscard]] double distance_to_edge(Vec3d p) const {
+    double best = std::numeric_limits<double>::infinity();
+    for (const WorldEdge& e : edges_) {
+      const Vec3d a(e.a), d = Vec3d(e.b) - a;
+      const double squared = dot(d, d);
+      const double t = squared > 0 ? std::clamp(dot(p - a, d) / squared, 0.0, 1.0) : 0;
+      best = std::min(best, length(p - a - d * t));
+    }
+    return best;
+  }
+  // Where along rows of the floor the light's visibility changes.
+  [[nodiscard]] std::vector<Vec3d> find_changes(int rows, int columns) const {
+    std::vector<Vec3d> changes;
+    for (int j = 0; j < 2 * rows; ++j) {
+      const double at = reach_ * (2 * ((j / 2) + 0.37) / rows - 1);
+      const auto place = [&](double t) {
+        const double s = reach_ * t;
+        return j % 2 == 0 ? Vec3d(s, at, 0) : Vec3d(at, s, 0);
+      };
+      bool before = sees_light(place(-1));
+      for (int i = 1; i <= columns; ++i) {
+        double low = 2.0 * (i - 1) / columns - 1, high = 2.0 * i / columns - 1;
+        const bool after = sees_light(place(high));
+        if (after != before) {
+          for (int k = 0; k < 30; ++k) {
+            const double middle = (low + high) / 2;
+            (sees_light(place(middle)) == before ? low : high) = middle;
+          }
+          changes.push_back(place(low));
+        }
+        before = after;
+      }
+    }
+    return changes;
+  }
+  struct Shares {
+    std::size_t changes = 0, found = 0, edges = 0, real = 0;
+    double worst = 0;
+  };
+  [[nodiscard]] Shares measure(double near) const {
+    Shares shares;
+    for (const Vec3d p : find_changes(60, 300)) {
+      const double distance = distance_to_edge(p);
+      ++shares.changes;
+      shares.found += distance < near ? 1 : 0;
+      shares.worst = std::max(shares.worst, distance);
+    }
+    for (const WorldEdge& e : edges_) {
+      if (std::abs(e.a.z) > 1e-4 || std::abs(e.b.z) > 1e-4) continue;
+      const Vec3d a(e.a), d = Vec3d(e.b) - a, middle = a + d * 0.5;
+      if (length(d) < 1e-3) continue;
+      const Vec3d off = normalize(cross(d, {0, 0, 1})) * near;
+      ++shares.edges;
+      shares.real += sees_light(middle + off) != sees_light(middle - off) ? 1 : 0;
+    }
+    return shares;
+  }
+
+ private:
+  std::shared_ptr<const PreparedScene> scene_;
+  double reach_;
+  std::vector<WorldEdge> edges_;
+  HomogeneousPoint light_;
+};
+
+Scene rounded_scene(const std::vector<std::pair<Mesh, Affine3d>>& solids, double radius,
+                    const Light& light) {
+  Camera camera;
+  camera.position = {5, -9, 6};
+  Scene scene = make_empty_scene(camera);
+  scene.lights.push_back(light);
+  for (const auto& [mesh, place] : solids) {
+    Object& object = add_object(scene, mesh, make_lambert(0.5F), place);
+    object.rounding.emplace();
+    object.rounding->method = RoundMethod::exact;
+    object.rounding->radius = radius;
+  }
+  add_object(scene, make_square_mesh(20), make_lambert(0.5F));
+  return scene;
+}
+
+std::vector<Light> lights() {
+  return {PointLight{{1.5, -2, 7}, {1, 1, 1}}, DirectionalLight{{0.4, 0.3, -1}, {1, 1, 1}}};
+}
+
+// An L of unit thickness, extruded along y.
+Mesh make_l_mesh() {
+  const std::vector<std::pair<float, float>> outline = {{-1, 0},   {1, 0}, {1, 0.8F},
+                                                        {0, 0.8F}, {0, 2}, {-1, 2}};
+  Mesh mesh;
+  mesh.name = "L";
+  for (const float y : {-0.7F, 0.7F}) {
+    for (const auto& [x, z] : outline) mesh.positions.push_back({x, y, z});
+  }
+  mesh.triangles = {{0, 1, 2}, {0, 2, 3}, {0, 3, 5}, {3, 4, 5}};
+  for (int i = 0; i < 4; ++i) {
+    const Triangle t = mesh.triangles[std::size_t(i)];
+    mesh.triangles.push_back({t[0] + 6, t[2] + 6, t[1] + 6});
+  }
+  for (std::uint32_t i = 0; i < 6; ++i) {
+    const std::uint32_t j = (i + 1) % 6;
+    mesh.triangles.push_back({i, i + 6, j + 6});
+    mesh.triangles.push_back({i, j + 6, j});
+  }
+  return mesh;
+}
+
+// All changes are found, and so many edges are no more than that.
+void expect_found(const char* name, const Shadowed::Shares& shares, double real) {
+  EXPECT_GT(shares.changes, 20U) << name;
+  EXPECT_EQ(shares.found, shares.changes) << name << ": " << shares.worst;
+  EXPECT_GE(double(shares.real), real * double(shares.edges)) << name << ": " << shares.edges;
+}
+
+TEST(rounded_shadows, of_a_box_are_its_outline) {
+  CsgRandom random(3);
+  for (const Light& light : lights()) {
+    for (int i = 0; i < 4; ++i) {
+      Affine3d place = random_placement(random, 0.4);
+      place.linear = {normalize(place.linear.x), normalize(place.linear.y), {}};
+      place.linear.z = cross(place.linear.x, place.linear.y);
+      place.linear.y = cross(place.linear.z, place.linear.x);
+      if (i == 0) place.linear = {};
+      place.translation.z = 3;
+      const Shadowed shadowed(
+          rounded_scene({{make_box_mesh(Vec3d{1, 0.8, 0.6}), place}}, 0.25, light), 8);
+      expect_found("box", shadowed.measure(2e-3), 1);
+    }
+  }
+}
+
+TEST(rounded_shadows, of_an_l_and_of_blocks_that_touch) {
+  for (const Light& light : lights()) {
+    const Shadowed l(rounded_scene({{make_l_mesh(), {{}, {0, 0, 1}}}}, 0.15, light), 8);
+    expect_found("L above", l.measure(2e-3), 0.97);
+    const Shadowed standing(rounded_scene({{make_l_mesh(), {{}, {0, 0, 0}}}}, 0.15, light), 8);
+    expect_found("L standing", standing.measure(2e-3), 0.97);
+    const Shadowed two(rounded_scene({{make_box_mesh(Vec3d{1, 0.8, 0.6}), {{}, {-1, 0, 2}}},
+                                      {make_box_mesh(Vec3d{1, 0.8, 0.6}), {{}, {1, 0, 2}}}},
+                                     0.2, light),
+                       8);
+    expect_found("touching", two.measure(2e-3), 0.8);
+    const Shadowed stack(rounded_scene({{make_box_mesh(Vec3d{1, 0.8, 0.6}), {{}, {0, 0, 0.6}}},
+                                        {make_box_mesh(Vec3d{0.7, 0.8, 0.6}), {{}, {0, 0, 1.8}}}},
+                                       0.2, light),
+                         8);
+    expect_found("stack", stack.measure(2e-3), 0.75);
+  }
+}
+
+// Of drilled, cut and united solids, in front of a floor that is a mesh.
+TEST(csg_shadows, on_a_floor_are_found) {
+  CsgRandom random(5);
+  for (const Light& light : lights()) {
+    Shadowed::Shares all;
+    for (int i = 0; i < 12; ++i) {
+      Scene scene = rounded_scene({}, 0, light);
+      Object object;
+      object.name = "solid";
+      object.csg = CsgId{0};
+      object.world_from_object.translation = {0, 0, 3};
+      CsgTree tree = random_tree(random, 2);
+      while (scene.materials.size() < tree.leaves.size()) {
+        scene.materials.push_back(make_lambert(0.5F));
+      }
+      scene.csg_trees.push_back(std::move(tree));
+      scene.objects.insert(scene.objects.begin(), object);
+      const Shadowed::Shares one = Shadowed(std::move(scene), 6).measure(5e-3);
+      all.changes += one.changes;
+      all.found += one.found;
+      all.edges += one.edges;
+      all.real += one.real;
+      all.worst = std::max(all.worst, one.worst);
+    }
+    std::printf("csg: changes %zu found %zu worst %.5f; edges %zu real %zu\n", all.changes,
+                all.found, all.worst, all.edges, all.real);
+  }
+}
+
+// The stones of an arch: visibility of the sun changes nowhere on the lawn but along edges that are found.
+TEST(rounded_shadows, of_an_arch_are_found) {
+  Scene scene = load_scene(std::string(ARRIS_SOURCE_DIR) + "/examples/scenes/arch.toml");
+  std::rotate(scene.objects.begin(), scene.objects.begin() + 1, scene.objects.end());
+  const Shadowed arch(std::move(scene), 15);
+  expect_found("arch", arch.measure(0.012), 0);
+}
+
+}  // namespace
+}  // namespace arris::test
