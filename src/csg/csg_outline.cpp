@@ -98,7 +98,7 @@ class PatchOutline {
   // On each generating line the polar plane is met once.
   void add_wall(const PrismLeaf& prism, const RegionEdge& edge, Vec3d eye) {
     const Affine3d object_from_primitive = inverse(prism.primitive_from_object);
-    const Quadratic polar = std::get<Quadratic>(surface_.form()).polar(eye);
+    const SpaceQuadratic polar = std::get<SpaceQuadratic>(surface_.form()).polar(eye);
     const auto at = [&](double u) -> std::optional<Vec3d> {
       const Vec2d p{edge.a.x + (edge.b.x - edge.a.x) * u, edge.a.y + (edge.b.y - edge.a.y) * u};
       const Vec2d s = prism.shape.scale_high;

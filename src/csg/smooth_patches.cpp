@@ -16,19 +16,19 @@ constexpr double kBoxSlack = 2 * kMergedDeviation;
 // Pieces of a rounded leaf's surface go on beyond their neighbours by this part of the radius.
 constexpr double kBesideRounding = 1e-4;
 
-Quadratic plane_form(const CsgPlane& plane) {
-  Quadratic form;
+SpaceQuadratic plane_form(const CsgPlane& plane) {
+  SpaceQuadratic form;
   form.b = plane.normal * 0.5;
   form.c = -plane.d;
   return form;
 }
 
 // u·(w u) - constant with u = L p + t.
-Quadratic quadric_form(const CsgQuadric& quadric) {
+SpaceQuadratic quadric_form(const CsgQuadric& quadric) {
   const Affine3d& m = quadric.unit_from_object;
   const Vec3d w = weights_of(quadric.form);
   const Mat3d weighted{w * m.linear.x, w * m.linear.y, w * m.linear.z};
-  Quadratic form;
+  SpaceQuadratic form;
   form.q = transpose(m.linear) * weighted;
   form.b = transpose(m.linear) * (w * m.translation);
   form.c = dot(m.translation, w * m.translation) - constant_of(quadric.form);
@@ -36,11 +36,11 @@ Quadratic quadric_form(const CsgQuadric& quadric) {
 }
 
 // n.x x sy + n.y y sx - k sx sy, where the scales grow with z.
-Quadratic wall_form(const PrismLeaf& prism, const RegionEdge& edge) {
+SpaceQuadratic wall_form(const PrismLeaf& prism, const RegionEdge& edge) {
   const Vec2d n{edge.b.y - edge.a.y, edge.a.x - edge.b.x}, growth = prism.growth();
   const double k = n.x * edge.a.x + n.y * edge.a.y, z0 = prism.shape.z_low;
   const Vec2d s{1 - growth.x * z0, 1 - growth.y * z0};  // at z = 0
-  Quadratic own;
+  SpaceQuadratic own;
   own.q = {{0, 0, n.x * growth.y / 2},
            {0, 0, n.y * growth.x / 2},
            {n.x * growth.y / 2, n.y * growth.x / 2, -k * growth.x * growth.y}};
@@ -49,7 +49,7 @@ Quadratic wall_form(const PrismLeaf& prism, const RegionEdge& edge) {
   // In the tree's space.
   const Affine3d& m = prism.primitive_from_object;
   const Mat3d turned = transpose(m.linear);
-  Quadratic form;
+  SpaceQuadratic form;
   form.q = turned * (own.q * m.linear);
   form.b = turned * (own.q * m.translation + own.b);
   form.c = own.value(m.translation);
@@ -113,7 +113,7 @@ std::vector<CsgHalfSpace> sides_of_vertex(const RoundedLeaf& rounded, Vec3d v) {
 }  // namespace
 
 double SmoothSurface::value(Vec3d p) const {
-  if (const auto* form = std::get_if<Quadratic>(&form_)) return form->value(p);
+  if (const auto* form = std::get_if<SpaceQuadratic>(&form_)) return form->value(p);
   const auto& torus = std::get<TorusLeaf>(form_);
   const Vec3d q = transform_point(torus.primitive_from_object, p);
   const double off = std::sqrt(q.x * q.x + q.y * q.y) - torus.ring_radius;
@@ -121,7 +121,7 @@ double SmoothSurface::value(Vec3d p) const {
 }
 
 Vec3d SmoothSurface::gradient(Vec3d p) const {
-  if (const auto* form = std::get_if<Quadratic>(&form_)) return form->gradient(p);
+  if (const auto* form = std::get_if<SpaceQuadratic>(&form_)) return form->gradient(p);
   const auto& torus = std::get<TorusLeaf>(form_);
   const Vec3d q = transform_point(torus.primitive_from_object, p);
   const double rho = std::sqrt(q.x * q.x + q.y * q.y), from_ring = rho - torus.ring_radius;
@@ -134,7 +134,7 @@ Vec3d SmoothSurface::gradient(Vec3d p) const {
 
 bool SmoothSurface::misses(const Box3d& box) const {
   const Vec3d middle = (box.low + box.high) * 0.5, h = (box.high - box.low) * 0.5;
-  if (const auto* form = std::get_if<Quadratic>(&form_)) {
+  if (const auto* form = std::get_if<SpaceQuadratic>(&form_)) {
     const auto reach = [&](Vec3d v) {
       return std::abs(v.x) * h.x + std::abs(v.y) * h.y + std::abs(v.z) * h.z;
     };
@@ -151,7 +151,7 @@ void SmoothSurface::collect_crossings(Vec3d a, Vec3d b, std::vector<double>& out
   const auto add = [&](double t) {
     if (t > 0 && t < 1) out.push_back(t);
   };
-  if (const auto* form = std::get_if<Quadratic>(&form_)) {
+  if (const auto* form = std::get_if<SpaceQuadratic>(&form_)) {
     const double c0 = form->value(a), c1 = dot(form->gradient(a), d), c2 = dot(d, form->q * d);
     const double discriminant = c1 * c1 - 4 * c0 * c2;
     if (!(discriminant >= 0)) return;

@@ -17,7 +17,7 @@
 namespace arris {
 
 // p·(q p) + 2 b·p + c, q symmetric.
-struct Quadratic {
+struct SpaceQuadratic {
   Mat3d q{{0, 0, 0}, {0, 0, 0}, {0, 0, 0}};
   Vec3d b;
   double c = 0;
@@ -25,7 +25,7 @@ struct Quadratic {
   [[nodiscard]] double value(Vec3d p) const { return dot(p, q * p + b * 2.0) + c; }
   [[nodiscard]] Vec3d gradient(Vec3d p) const { return (q * p + b) * 2.0; }
   // The plane that meets the surface where lines from the eye touch it.
-  [[nodiscard]] Quadratic polar(Vec3d eye) const {
+  [[nodiscard]] SpaceQuadratic polar(Vec3d eye) const {
     const Vec3d n = q * eye + b;
     return {{{0, 0, 0}, {0, 0, 0}, {0, 0, 0}}, n * 0.5, dot(b, eye) + c};
   }
@@ -33,7 +33,7 @@ struct Quadratic {
 
 class SmoothSurface {
  public:
-  using Form = std::variant<Quadratic, TorusLeaf>;
+  using Form = std::variant<SpaceQuadratic, TorusLeaf>;
   explicit SmoothSurface(Form form) : form_(std::move(form)) {}
 
   [[nodiscard]] const Form& form() const { return form_; }

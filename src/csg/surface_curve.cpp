@@ -91,14 +91,14 @@ bool SurfaceCurve::is_one_piece(const Box3d& box, Vec3d along) const {
 // surfaces are nearly tangent it tells far more than they.
 bool SurfaceCurve::misses(const Box3d& box) const {
   if (s0_.misses(box) || s1_.misses(box)) return true;
-  const auto* f0 = std::get_if<Quadratic>(&s0_.form());
-  const auto* f1 = std::get_if<Quadratic>(&s1_.form());
+  const auto* f0 = std::get_if<SpaceQuadratic>(&s0_.form());
+  const auto* f1 = std::get_if<SpaceQuadratic>(&s1_.form());
   if (f0 == nullptr || f1 == nullptr) return false;
   const Vec3d middle = (box.low + box.high) * 0.5;
   const Vec3d g0 = f0->gradient(middle), g1 = f1->gradient(middle);
   const double share = dot(g0, g1) / dot(g0, g0);
   if (!std::isfinite(share)) return false;
-  Quadratic sum;
+  SpaceQuadratic sum;
   sum.q = {f1->q.x - f0->q.x * share, f1->q.y - f0->q.y * share, f1->q.z - f0->q.z * share};
   sum.b = f1->b - f0->b * share;
   sum.c = f1->c - f0->c * share;
