@@ -62,4 +62,16 @@ std::optional<std::uint32_t> CellProbe::find_cell(Vec3d p,
   return found;
 }
 
+bool CellProbe::meets(const Ray& ray, double t_min, double t_max) const {
+  thread_local BoundarySearch search;
+  bool found = false;
+  tree_.visit([&](const Box3d& box) { return line_meets_box(box, ray, t_min, t_max); },
+              [&](std::uint32_t cell) {
+                cells_->visit_boundaries(cell, ray, t_min, t_max, search,
+                                         [&](const CsgBoundary&) { return found = true; });
+                return !found;
+              });
+  return found;
+}
+
 }  // namespace arris

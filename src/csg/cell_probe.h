@@ -27,6 +27,8 @@ class CellProbe {
   // `guess`: looked at first.
   [[nodiscard]] std::optional<std::uint32_t> find_cell(
       Vec3d p, std::optional<std::uint32_t> guess = std::nullopt) const;
+  // Whether the ray enters or leaves the solid between.
+  [[nodiscard]] bool meets(const Ray& ray, double t_min, double t_max) const;
   // How far from a surface points are asked about, to tell its two sides: far above the rounding of coordinates and
   // the deviation of merged surfaces, far below what is to be seen.
   [[nodiscard]] double reach() const { return reach_; }

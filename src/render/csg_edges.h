@@ -24,7 +24,7 @@ class CsgEdges {
     std::vector<Segment> sharp, silhouette;
   };
   [[nodiscard]] Found find(Vec3d eye, int threads) const;
-  // Where rays from the eye touch the solid and go on beside it: where its shadow begins.
+  // Where rays from the eye touch the solid first and go on beside it: where its shadow may begin.
   [[nodiscard]] std::vector<Segment> find_touched(Vec3d eye, int threads) const;
 
   [[nodiscard]] const std::vector<CreaseSegment>& creases() const { return creases_; }
@@ -33,6 +33,8 @@ class CsgEdges {
   [[nodiscard]] std::uint64_t bytes() const;
 
  private:
+  [[nodiscard]] int parts_of(Vec3d along) const;
+
   std::shared_ptr<const CellProbe> probe_;
   std::shared_ptr<const SmoothPatches> patches_;
   CsgOutline outline_;

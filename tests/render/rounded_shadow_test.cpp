@@ -1,10 +1,9 @@
-// Shadows of rounded solids: found edges against dense shadow rays.
+// Shadows of rounded solids, and of solids of solids: found edges against dense shadow rays.
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <cstdio>
 #include <limits>
 #include <memory>
 #include <string>
@@ -212,22 +211,23 @@ TEST(csg_shadows, on_a_floor_are_found) {
       Object object;
       object.name = "solid";
       object.csg = CsgId{0};
-      object.world_from_object.translation = {0, 0, 3};
-      CsgTree tree = random_tree(random, 2);
+      object.world_from_object.translation = {0.13, 0.07, 3};
+      CsgTree tree = random_tree(random, 3);
       while (scene.materials.size() < tree.leaves.size()) {
         scene.materials.push_back(make_lambert(0.5F));
       }
       scene.csg_trees.push_back(std::move(tree));
       scene.objects.insert(scene.objects.begin(), object);
-      const Shadowed::Shares one = Shadowed(std::move(scene), 6).measure(5e-3);
+      const Shadowed::Shares one = Shadowed(std::move(scene), 6).measure(0.012);
       all.changes += one.changes;
       all.found += one.found;
       all.edges += one.edges;
       all.real += one.real;
       all.worst = std::max(all.worst, one.worst);
     }
-    std::printf("csg: changes %zu found %zu worst %.5f; edges %zu real %zu\n", all.changes,
-                all.found, all.worst, all.edges, all.real);
+    EXPECT_GT(all.changes, 300U);
+    EXPECT_GE(double(all.found), 0.99 * double(all.changes)) << all.worst;
+    EXPECT_GE(double(all.real), 0.5 * double(all.edges));
   }
 }
 
