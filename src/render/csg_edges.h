@@ -28,6 +28,7 @@ class CsgEdges {
   [[nodiscard]] std::vector<Segment> find_touched(Vec3d eye, int threads) const;
 
   [[nodiscard]] const std::vector<CreaseSegment>& creases() const { return creases_; }
+  [[nodiscard]] const CellProbe& probe() const { return *probe_; }
   // Bounds of the solid's surface.
   [[nodiscard]] Box3d bounds() const;
   [[nodiscard]] std::uint64_t bytes() const;
