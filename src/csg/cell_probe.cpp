@@ -1,6 +1,7 @@
 #include "csg/cell_probe.h"
 
 #include <algorithm>
+#include <limits>
 #include <utility>
 
 namespace arris {
@@ -60,6 +61,36 @@ std::optional<std::uint32_t> CellProbe::find_cell(Vec3d p,
         return !found;
       });
   return found;
+}
+
+bool CellProbe::meets(const Ray& ray, double t_min, double t_max) const {
+  thread_local BoundarySearch search;
+  bool found = false;
+  tree_.visit([&](const Box3d& box) { return line_meets_box(box, ray, t_min, t_max); },
+              [&](std::uint32_t cell) {
+                cells_->visit_boundaries(cell, ray, t_min, t_max, search,
+                                         [&](const CsgBoundary&) { return found = true; });
+                return !found;
+              });
+  return found;
+}
+
+std::optional<CsgSurfacePoint> CellProbe::first_met(const Ray& ray, double t_min) const {
+  thread_local BoundarySearch search;
+  double t_max = std::numeric_limits<double>::infinity();
+  std::optional<CsgSurfacePoint> first;
+  tree_.visit([&](const Box3d& box) { return line_meets_box(box, ray, t_min, t_max); },
+              [&](std::uint32_t cell) {
+                cells_->visit_boundaries(
+                    cell, ray, t_min, t_max, search, [&](const CsgBoundary& b) {
+                      if (!b.entering) return false;
+                      first = {b.t, ray.origin + ray.direction * b.t, b.leaf, b.face};
+                      t_max = b.t;
+                      return true;
+                    });
+                return true;
+              });
+  return first;
 }
 
 }  // namespace arris

@@ -15,6 +15,12 @@
 
 namespace arris {
 
+struct CsgSurfacePoint {
+  double t = 0;
+  Vec3d position;
+  std::uint32_t leaf = 0, face = 0;  // CsgBoundary's
+};
+
 class CellProbe {
  public:
   explicit CellProbe(std::shared_ptr<const CsgCells> cells);
@@ -27,6 +33,10 @@ class CellProbe {
   // `guess`: looked at first.
   [[nodiscard]] std::optional<std::uint32_t> find_cell(
       Vec3d p, std::optional<std::uint32_t> guess = std::nullopt) const;
+  // Whether the ray enters or leaves the solid between.
+  [[nodiscard]] bool meets(const Ray& ray, double t_min, double t_max) const;
+  // Where the ray first enters the solid beyond t_min.
+  [[nodiscard]] std::optional<CsgSurfacePoint> first_met(const Ray& ray, double t_min) const;
   // How far from a surface points are asked about, to tell its two sides: far above the rounding of coordinates and
   // the deviation of merged surfaces, far below what is to be seen.
   [[nodiscard]] double reach() const { return reach_; }

@@ -13,6 +13,8 @@
 //            Pieces along a ray of the light have no extent along the event and are left out, and so is the line
 //            where a solid enters a receiver. Where two blockers hide an area light together, neither's umbral edges
 //            end what they hide.
+//            Where roundings have taken a receiver away (ShadowReceiver::voids), an edge is shown on its sharp face and
+//            on what lies behind: which of both has it is not decided.
 // Cost       per event about that of one ray through each receiver's tree, parallel over events
 // Source     Bala, Walter, Greenberg 2003, sections 6.4, 6.5
 #pragma once

@@ -9,6 +9,12 @@ namespace {
 
 // The sine of half the turn of a crease's sides.
 const double kSlack = std::sin(kSideTurn / 2);
+// Of the solid's size.
+constexpr double kTouchedPart = 1.0 / 32;
+// Ends are looked at this part of a segment before them.
+constexpr double kInset = 1e-3;
+// What is nearer to a piece than so many CellProbe::reach() doesn't stand in its light: its own surface.
+constexpr double kBeside = 100;
 
 }  // namespace
 
@@ -39,16 +45,41 @@ CsgEdges::Found CsgEdges::find(Vec3d eye, int threads) const {
   return found;
 }
 
+// A ray that touches is outside the solid on both sides. Pieces that touch at an end only are taken whole, rather than
+// none of them; long ones are cut, as rays may touch a part.
 std::vector<CsgEdges::Segment> CsgEdges::find_touched(Vec3d eye, int threads) const {
+  const auto touches = [&](std::uint32_t cell, Vec3d p) {
+    const Vec3d step = normalize(p - eye) * probe_->reach();
+    return !probe_->contains(cell, p - step) && !probe_->contains(cell, p + step);
+  };
+  const auto is_lit = [&](Vec3d p) {
+    return !probe_->meets({p, eye - p}, kBeside * probe_->reach() / length(eye - p), 1);
+  };
   std::vector<Segment> touched;
+  const auto add = [&](Vec3d a, Vec3d b) {
+    if (is_lit((a + b) * 0.5) || is_lit(a) || is_lit(b)) touched.push_back({a, b});
+  };
   for (const CreaseSegment& crease : creases_) {
-    const Vec3d p = crease.middle, step = normalize(p - eye) * probe_->reach();
-    if (probe_->contains(crease.cell, p - step) || probe_->contains(crease.cell, p + step))
-      continue;
-    touched.push_back({crease.a, crease.b});
+    const int parts = parts_of(crease.b - crease.a);
+    const Vec3d d = (crease.b - crease.a) / parts;
+    for (int i = 0; i < parts; ++i) {
+      const Vec3d a = crease.a + d * i, b = crease.a + d * (i + 1);
+      const Vec3d middle = parts == 1 ? crease.middle : (a + b) * 0.5;
+      const bool any = touches(crease.cell, middle) || touches(crease.cell, a + d * kInset) ||
+                       touches(crease.cell, b - d * kInset);
+      if (any) add(a, b);
+    }
   }
-  for (const OutlineSegment& o : outline_.find(eye, threads)) touched.push_back({o.a, o.b});
+  for (const OutlineSegment& o : outline_.find(eye, threads)) {
+    const int parts = parts_of(o.b - o.a);
+    const Vec3d d = (o.b - o.a) / parts;
+    for (int i = 0; i < parts; ++i) add(o.a + d * i, o.a + d * (i + 1));
+  }
   return touched;
+}
+
+int CsgEdges::parts_of(Vec3d along) const {
+  return std::max(1, int(std::ceil(length(along) / (kTouchedPart * probe_->size()))));
 }
 
 Box3d CsgEdges::bounds() const {

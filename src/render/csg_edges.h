@@ -24,15 +24,18 @@ class CsgEdges {
     std::vector<Segment> sharp, silhouette;
   };
   [[nodiscard]] Found find(Vec3d eye, int threads) const;
-  // Where rays from the eye touch the solid and go on beside it: where its shadow begins.
+  // Where rays from the eye touch the solid first and go on beside it: where its shadow may begin.
   [[nodiscard]] std::vector<Segment> find_touched(Vec3d eye, int threads) const;
 
   [[nodiscard]] const std::vector<CreaseSegment>& creases() const { return creases_; }
+  [[nodiscard]] const CellProbe& probe() const { return *probe_; }
   // Bounds of the solid's surface.
   [[nodiscard]] Box3d bounds() const;
   [[nodiscard]] std::uint64_t bytes() const;
 
  private:
+  [[nodiscard]] int parts_of(Vec3d along) const;
+
   std::shared_ptr<const CellProbe> probe_;
   std::shared_ptr<const SmoothPatches> patches_;
   CsgOutline outline_;

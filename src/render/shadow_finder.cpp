@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <optional>
 
+#include "render/csg_shadows.h"
 #include "render/rounded_edges.h"
 
 namespace arris {
@@ -184,15 +185,20 @@ bool ShadowFinder::update(const PreparedScene& scene, const EdgeObjects& objects
                           : solid_events(*solid, world, *point, around);
     }
     std::vector<ShadowReceiver> receivers;
+    pair.edges.clear();
     for (const std::uint32_t receiver : pair.receivers) {
       const std::optional<EdgeObjects::Parts> r = objects.parts(scene, receiver);
       if (r) receivers.push_back({r->faces, *r->world, receiver == blocker, r->voids});
+      if (const CsgEdges* const on = objects.solid(receiver)) {
+        const std::vector<WorldEdge> found = find_edges_on_solid(
+            pair.events, *on, scene.scene().objects[receiver].world_from_object);
+        pair.edges.insert(pair.edges.end(), found.begin(), found.end());
+      }
     }
-    pair.edges.clear();
     for (const ShadowEdge& edge : find_shadow_edges(pair.events, receivers)) {
       pair.edges.push_back({edge.a, edge.b});
     }
-    done += pair.events.size() * receivers.size();
+    done += pair.events.size() * pair.receivers.size();
     pair.events_known = pair.edges_known = true;
     changed = true;
   }

@@ -2,12 +2,12 @@
 // What       The shader tells which object stands between a point that it shades and a light: a triple of light,
 //            blocker and receiver. For each pair of light and blocker the finder keeps the events, and the edges on
 //            all its receivers, which are clipped against each other. What a move changes is found again.
-// Guarantee  the same calls give the same edges in the same order, at any number of threads
-// Limits     receivers are meshes; so are casters, and solids of solids before point-like lights. Lights are the scene's
-//            own and the sun, not what emits by material. Where receivers are rounded, edges lie on their sharp faces, and
-//            may go on to what is beyond.
-//            Shadows of area lights begin at sharp edges, also where the blocker is rounded. The work of one update
-//            is bounded: what does not fit waits for the next.
+// Guarantee  the same calls give the same edges in the same order, at any number of threads; before point-like
+//            lights visibility changes only along found edges (tests/render/rounded_shadow_test.cpp)
+// Limits     solids of solids cast shadows before point-like lights only (and see csg_shadows.h). Lights are the
+//            scene's own and the sun, not what emits by material. Where receivers are rounded, edges lie on their sharp
+//            faces, and may go on to what is beyond. Shadows of area lights begin at sharp edges, also where the
+//            blocker is rounded. The work of one update is bounded: what does not fit waits for the next.
 // Source     Bala, Walter, Greenberg (2003), §6.3 to §6.5
 #pragma once
 
