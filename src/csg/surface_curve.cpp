@@ -87,14 +87,30 @@ bool SurfaceCurve::is_one_piece(const Box3d& box, Vec3d along) const {
   return true;
 }
 
+// With a ring the same by the gradients at the corners, which in tame boxes bound those between.
+bool SurfaceCurve::misses_difference(const Box3d& box, Vec3d middle) const {
+  constexpr double kSafely = 1.5;
+  if (!s0_.is_tame(box) || !s1_.is_tame(box)) return false;
+  const Vec3d g0 = s0_.gradient(middle), g1 = s1_.gradient(middle);
+  const double share = dot(g0, g1) / dot(g0, g0);
+  if (!std::isfinite(share)) return false;
+  double steepest = 0;
+  for (const Vec3d& corner : corners_of(box)) {
+    steepest = std::max(steepest, length(s1_.gradient(corner) - s0_.gradient(corner) * share));
+  }
+  const double rounding = 1e-12 * length(g1) * size_;
+  return std::abs(s1_.value(middle) - s0_.value(middle) * share) >
+         kSafely * steepest * length(box.high - middle) + rounding;
+}
+
 // The curve also lies on every other quadric of the two's pencil: on that whose gradient is least in the box. Where
 // surfaces are nearly tangent it tells far more than they.
 bool SurfaceCurve::misses(const Box3d& box) const {
   if (s0_.misses(box) || s1_.misses(box)) return true;
   const auto* f0 = std::get_if<SpaceQuadratic>(&s0_.form());
   const auto* f1 = std::get_if<SpaceQuadratic>(&s1_.form());
-  if (f0 == nullptr || f1 == nullptr) return false;
   const Vec3d middle = (box.low + box.high) * 0.5;
+  if (f0 == nullptr || f1 == nullptr) return misses_difference(box, middle);
   const Vec3d g0 = f0->gradient(middle), g1 = f1->gradient(middle);
   const double share = dot(g0, g1) / dot(g0, g0);
   if (!std::isfinite(share)) return false;

@@ -36,6 +36,7 @@ class SurfaceCurve {
   [[nodiscard]] Try try_line(const Box3d& box, Vec3d p) const;
   [[nodiscard]] bool is_one_piece(const Box3d& box, Vec3d along) const;
   [[nodiscard]] bool misses(const Box3d& box) const;
+  [[nodiscard]] bool misses_difference(const Box3d& box, Vec3d middle) const;
   [[nodiscard]] bool is_tangent(const Box3d& box) const;
   // Where the curve meets the plane x[axis] = at, near p.
   [[nodiscard]] std::optional<Vec3d> crossing(Vec3d p, int axis, double at) const;

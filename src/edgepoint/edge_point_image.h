@@ -102,6 +102,7 @@ struct EdgePointImage {
   [[nodiscard]] std::size_t offset(int x, int y) const {
     return std::size_t(y) * std::size_t(width_px) + std::size_t(x);
   }
+  [[nodiscard]] std::size_t bytes() const;
 };
 
 }  // namespace arris

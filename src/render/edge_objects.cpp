@@ -151,7 +151,7 @@ EdgeObjects::EdgeObjects(const PreparedScene& prepared, int threads) {
     const WeldedMesh welded = make_welded_mesh({mesh.positions, mesh.triangles}, mesh.name);
     const Seams seams(mesh, tasks[t].first.second);
     EdgeMeshOptions options;
-    options.min_sharp_angle = mesh.normals.empty() ? kSharpTurn : 2 * kPi;
+    options.min_sharp_angle = mesh.normals.empty() ? kSharpTurn : kPi;
     options.is_marked = [&](std::uint32_t h, std::uint32_t twin) { return seams.jumps(h, twin); };
     const bool outward = std::all_of(welded.shells.begin(), welded.shells.end(),
                                      [](const Shell& s) { return s.closed && s.volume > 0; });

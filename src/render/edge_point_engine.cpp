@@ -273,6 +273,7 @@ void EdgePointEngine::Impl::keep_report(const FrameReport& report, const EdgeTot
   stats_.unresolved = report.unresolved;
   stats_.still_paths = film_.least_paths();
   stats_.cache_bytes = cache_.bytes();
+  stats_.image_bytes = maker_.image().bytes();
 }
 
 void EdgePointEngine::Impl::set_scene(std::shared_ptr<const PreparedScene> scene) {
