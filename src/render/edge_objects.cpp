@@ -250,7 +250,7 @@ std::vector<EdgeObjects::RoundedEdge> EdgeObjects::find_rounded(const PreparedSc
         const Vec3d p = transform_point(rounding_from_object, Vec3d(mesh.vertices[v]));
         return dot(p - start, Vec3d(arc.line.axis));
       };
-      const auto [from, to] = std::minmax(along(edge.v0), along(edge.v1));
+      const auto [from, to] = std::minmax({along(edge.v0), along(edge.v1)});
       // Corners take of the edge what the arc lacks.
       const double reach = 2 * data.radius;
       if (to < -reach || from > double(arc.line.length) + reach) continue;

@@ -613,7 +613,7 @@ scale = 2
   EXPECT_EQ(scene_at(scene, 4.25).camera->position, Vec3d(3, 2, 3));
   EXPECT_EQ(scene_at(scene, 4.25).camera->fov_deg, 30);
   EXPECT_EQ(scene_at(scene, -100).camera->fov_deg, 20);
-  const auto& spot = std::get<SpotLight>(scene_at(scene, 2).lights[0]);
+  const auto spot = std::get<SpotLight>(scene_at(scene, 2).lights[0]);
   EXPECT_EQ(spot.intensity, Rgb(4, 3, 2));
   EXPECT_EQ(spot.direction, Vec3d(0, 0, -5));
   EXPECT_EQ(scene_at(scene, 0).objects[0].world_from_object, scene.objects[0].world_from_object);

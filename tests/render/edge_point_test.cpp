@@ -161,6 +161,21 @@ TEST(EdgePoint, moved_objects_and_lights_show_where_they_are) {
   EXPECT_LT(rmse(after, reference), 0.15 * rmse(before, reference));
 }
 
+// Vertex normals make a mesh smooth: its facets show no edges.
+TEST(EdgePoint, smooth_meshes_show_outlines_only) {
+  Scene scene = make_scene(32);
+  Mesh sphere = make_sphere_mesh(3);
+  sphere.normals = sphere.positions;
+  add_object(scene, sphere, make_lambert(0.5F), translation({0, 2, 1}));
+  EdgePointSettings settings = synchronous(EdgePointShader::direct);
+  EdgePointEngine without(prepare_scene(make_scene(32)), settings);
+  EdgePointEngine with(prepare_scene(scene), settings);
+  without.next_frame();
+  with.next_frame();
+  EXPECT_EQ(with.stats().edges.sharp, without.stats().edges.sharp);
+  EXPECT_GT(with.stats().edges.silhouette, without.stats().edges.silhouette + 20);
+}
+
 TEST(EdgePoint, a_light_that_is_not_there_is_an_error) {
   EdgePointEngine engine(prepare_scene(make_scene(32)), synchronous());
   engine.set_light(7, PointLight{});

@@ -125,8 +125,8 @@ TEST(prepare_moved, equals_preparing_anew) {
       EXPECT_EQ(moved, picture_of(*prepare_scene(scene, kMovable))) << run << " " << step;
       // Rays are rounded otherwise in an object's own space: a path now and then goes another way.
       EXPECT_LT(differing(moved, picture_of(*prepare_scene(scene))), 0.02) << run << " " << step;
-      const PrepareStats &stats = prepare_stats(*prepared),
-                         &fresh = prepare_stats(*prepare_scene(scene, kMovable));
+      const PrepareStats stats = prepare_stats(*prepared);
+      const PrepareStats fresh = prepare_stats(*prepare_scene(scene, kMovable));
       EXPECT_EQ(stats.rounded_edges, fresh.rounded_edges);
       EXPECT_EQ(stats.rounding_bytes, fresh.rounding_bytes);
     }
