@@ -174,8 +174,6 @@ FrameCosts measure_frames(const FlightScene& flight, const FlightOptions& option
   costs.shading_ms = median(shading);
   costs.full_ms =
       full_shading_ms(*scene, make_point_shader(settings), flight_camera(flight, options.frames));
-  costs.points_per_pixel =
-      double(costs.median.points) / (double(options.width_px) * options.height_px);
   return costs;
 }
 

@@ -25,7 +25,6 @@ struct FrameCosts {
   double longest_ms = 0;                 // of them
   double shading_ms = 0;                 // of a frame's new points, median
   double full_ms = 0;                    // of shading every pixel, from every 64th
-  double points_per_pixel = 0;
 };
 FrameCosts measure_frames(const FlightScene& flight, const FlightOptions& options);
 

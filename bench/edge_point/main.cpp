@@ -59,7 +59,8 @@ void print_frames(const Arguments& arguments) {
         options.width_px, options.height_px, options.frames, 100 * options.density));
     say("scene     triangles shader  edges raster points reach interp  anti complex  total longest "
         "|"
-        " new/px full ms speed-up | silh. sharp shadow | empty simple complex | bytes/px  cache");
+        " new/px full ms speed-up | silh. sharp shadow | empty simple complex | bytes/px  cache | "
+        "scene, trees");
     for (const FlightScene& scene : make_scenes(arguments)) {
       const FrameCosts c = measure_frames(scene, options);
       const auto& s = c.median.stages;
@@ -68,7 +69,7 @@ void print_frames(const Arguments& arguments) {
           "{:10}{:9} {:6} {:6.2f} {:6.2f} {:6.2f} {:5.2f} {:6.2f} {:5.2f} {:7.2f} {:6.2f} {:7.2f} "
           "| "
           "1/{:<4.0f} {:7.0f} {:8.1f} | {:5} {:5} {:6} | {:4.1f}% {:5.1f}% {:6.2f}% | {:8.1f} "
-          "{:4.0f} MB",
+          "{:4.0f} MB | {:.0f}, {:.0f} ms",
           scene.name, c.triangles, name_of(scene.shader), s.edges, s.raster, s.points,
           s.reachability, s.interpolation, s.antialias, s.complex, s.total, c.longest_ms,
           pixels / double(c.median.new_points), c.full_ms, c.full_ms / (s.total + c.shading_ms),
@@ -76,7 +77,7 @@ void print_frames(const Arguments& arguments) {
           100 * double(c.median.classes.empty) / pixels,
           100 * double(c.median.classes.simple) / pixels,
           100 * double(c.median.classes.complex) / pixels, double(c.median.image_bytes) / pixels,
-          double(c.median.cache_bytes) / 1e6));
+          double(c.median.cache_bytes) / 1e6, c.prepare_ms, c.engine_ms));
     }
   }
 }

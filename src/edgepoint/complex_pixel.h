@@ -4,7 +4,6 @@
 //            samples that reach it, one region at a time; where a subpixel is complex, too, or nothing reaches it,
 //            the pixel's unconstrained colour stands in.
 // Guarantee  reachability is that of reach_chain-inl.h: the 6 × 6 subpixels are one word of bits
-// Cost       under a microsecond
 // Source     Bala, Walter, Greenberg (2003), §5.4
 #pragma once
 

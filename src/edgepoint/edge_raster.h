@@ -5,7 +5,7 @@
 //            segment with rows and columns tell one way through the pixels, also where it runs exactly through
 //            corners (tests/edgepoint/edge_raster_test.cpp). So a pixel that one edge passes is crossed twice.
 // Limits     pictures of at most 65,536 pixels a side
-// Cost       one division for each segment, about 2 ns for each crossing
+// Cost       linear in segments times bands, and in crossings
 // Source     Bala, Walter, Greenberg (2003), §4.5, §5.4
 #pragma once
 

@@ -163,13 +163,4 @@ std::vector<std::uint32_t> EdgeTree::find_possible_silhouettes(
   return found;
 }
 
-std::uint64_t EdgeTree::bytes() const {
-  std::uint64_t total = open_.size() * sizeof(std::uint32_t);
-  for (const Part* part : {&smooth_, &sharp_}) {
-    total +=
-        part->nodes.size() * sizeof(BoundsNode) + part->edges.size() * (sizeof(std::uint32_t) + 32);
-  }
-  return total;
-}
-
 }  // namespace arris

@@ -42,7 +42,6 @@ class EdgeTree {
   // Edges of which may_be_silhouette() holds, as for a light with these corners; open edges first.
   [[nodiscard]] std::vector<std::uint32_t> find_possible_silhouettes(
       std::span<const HomogeneousPoint> from) const;
-  [[nodiscard]] std::uint64_t bytes() const;
 
   // Planes n·x = d of both faces of each edge.
   struct Part {

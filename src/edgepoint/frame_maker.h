@@ -51,8 +51,6 @@ class FrameMaker {
   [[nodiscard]] const EdgePointImage& image() const { return image_; }
   // How much each pixel wants a new sample (reconstruct.h).
   [[nodiscard]] std::span<const std::uint8_t> wanted() const { return wanted_; }
-  // The picture's rows, cut for parallel loops.
-  [[nodiscard]] std::span<const RowBand> bands() const { return bands_; }
 
  private:
   void find_depth(const PixelView& view, int threads);

@@ -100,13 +100,13 @@ void PointCache::add(std::span<const ShadedPoint> points, std::uint32_t frame) {
   }
 }
 
-void PointCache::move(std::uint32_t object, const Affine3d& to_from, std::uint32_t frame) {
+void PointCache::move(std::span<const std::optional<Affine3d>> to_from, std::uint32_t frame) {
   for (std::size_t b = 0; b < blocks_.size(); ++b) {
     PointBlock& block = blocks_[b];
     const auto first = PointNumber(b * kPointBlock);
     for (PointNumber i = first; i < first + block.count; ++i) {
-      if (object_[i] != object) continue;
-      const Vec3f p(transform_point(to_from, Vec3d(position(i))));
+      if (object_[i] >= to_from.size() || !to_from[object_[i]]) continue;
+      const Vec3f p(transform_point(*to_from[object_[i]], Vec3d(position(i))));
       x_[i] = p.x;
       y_[i] = p.y;
       z_[i] = p.z;

@@ -13,6 +13,7 @@
 #include <bit>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -63,8 +64,8 @@ class PointCache {
 
   // Takes the points of one frame in, those that replace others into their places.
   void add(std::span<const ShadedPoint> points, std::uint32_t frame);
-  // Moves the points of an object, and makes them old.
-  void move(std::uint32_t object, const Affine3d& to_from, std::uint32_t frame);
+  // Moves the points of objects, and makes them old. to_from: by object; those without value stay.
+  void move(std::span<const std::optional<Affine3d>> to_from, std::uint32_t frame);
   // Makes points old: those for which is_stale(position) holds, of blocks for which may_hold(lower, upper) does.
   template <class MayHold, class IsStale>
   void make_old(std::uint32_t frame, const MayHold& may_hold, const IsStale& is_stale);

@@ -2,7 +2,7 @@
 // What       projects the points of the cache and keeps the nearest of each pixel, with the quarter of the pixel
 //            that it lies in
 // Guarantee  the same points at any number of bands: the nearest wins, of equal ones the lower number
-// Cost       about 2 ns a point; a block outside of a band costs its eight corners
+// Cost       linear in the points; a block outside of a band costs its eight corners
 // Source     Bala, Walter, Greenberg (2003), §4.3
 #pragma once
 

@@ -86,9 +86,4 @@ Box3d CsgEdges::bounds() const {
   return probe_->tree().is_empty() ? Box3d{} : probe_->tree().bounds();
 }
 
-std::uint64_t CsgEdges::bytes() const {
-  return creases_.size() * sizeof(CreaseSegment) +
-         patches_->patches().size() * (sizeof(SmoothPatch) + sizeof(SmoothSurface));
-}
-
 }  // namespace arris

@@ -31,7 +31,6 @@ class CsgEdges {
   [[nodiscard]] const CellProbe& probe() const { return *probe_; }
   // Bounds of the solid's surface.
   [[nodiscard]] Box3d bounds() const;
-  [[nodiscard]] std::uint64_t bytes() const;
 
  private:
   [[nodiscard]] int parts_of(Vec3d along) const;

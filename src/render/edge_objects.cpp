@@ -336,23 +336,4 @@ std::optional<EdgeObjects::Parts> EdgeObjects::parts(const PreparedScene& prepar
   return parts;
 }
 
-std::uint64_t EdgeObjects::bytes() const {
-  std::uint64_t sum = 0;
-  std::vector<const MeshEdges*> counted;
-  std::vector<const CsgEdges*> solids;
-  for (const ObjectEdges& object : objects_) {
-    const CsgEdges* const solid = object.solid.get();
-    if (solid != nullptr && std::ranges::find(solids, solid) == solids.end()) {
-      solids.push_back(solid);
-      sum += solid->bytes();
-    }
-    const MeshEdges* const mesh = object.mesh.get();
-    if (mesh == nullptr || std::find(counted.begin(), counted.end(), mesh) != counted.end())
-      continue;
-    counted.push_back(mesh);
-    sum += mesh->tree.bytes();
-  }
-  return sum;
-}
-
 }  // namespace arris

@@ -67,7 +67,6 @@ class EdgeObjects {
   // Takes in which edges the other scene's roundings round; true if they are other ones.
   bool update_roundings(const PreparedScene& before, const PreparedScene& after);
   [[nodiscard]] Sphere bounding_sphere(const PreparedScene& prepared, std::uint32_t object) const;
-  [[nodiscard]] std::uint64_t bytes() const;
 
  private:
   struct MeshEdges;

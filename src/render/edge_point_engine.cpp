@@ -280,16 +280,20 @@ void EdgePointEngine::Impl::set_scene(std::shared_ptr<const PreparedScene> scene
   if (scene == scene_) return;
   const Scene &before = scene_->scene(), &after = scene->scene();
   std::vector<Sphere> moved;
+  std::vector<std::optional<Affine3d>> to_from(after.objects.size());
   for (std::uint32_t i = 0; i < after.objects.size(); ++i) {
     const Affine3d &from = before.objects[i].world_from_object,
                    &to = after.objects[i].world_from_object;
     if (from == to) continue;
-    cache_.move(i, to * inverse(from), frame_);
+    to_from[i] = to * inverse(from);
     shadows_.object_moved(i);
     moved.push_back(objects_.bounding_sphere(*scene_, i));
     moved.push_back(objects_.bounding_sphere(*scene, i));
   }
-  make_shadowed_old(*lights_, moved, frame_, cache_);
+  if (!moved.empty()) {
+    cache_.move(to_from, frame_);
+    make_shadowed_old(*lights_, moved, frame_, cache_);
+  }
   const bool rounded_anew = objects_.update_roundings(*scene_, *scene);
   auto lights = std::make_shared<const std::vector<ShadowLight>>(shadow_lights(*scene));
   const bool lights_changed = find_changed_lights(before, after, shadows_);

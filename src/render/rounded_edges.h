@@ -3,7 +3,7 @@
 //            cylinder or sphere is perpendicular to the view: on a cylinder straight lines along its axis, on a sphere
 //            arcs of a circle. The border between a face and its rounding is no discontinuity and gets no edge.
 // Guarantee  lines and arcs lie on the rounded surface of convex solids, and end where their cylinder or sphere ends
-//            (tests/render/rounded_edges_test.cpp)
+//            (tests/render/rounded_shadow_test.cpp)
 // Limits     beside concave edges, and where roundings end in caps, a line may go on for up to a radius
 // Legend     r radius; c centre or axis point; n outward normal; e eye: on the outline n·(e − c) = r
 // Derivation A ray that touches the outline at c + r n in direction d leaves the void by a face of normal m, whose

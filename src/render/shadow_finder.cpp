@@ -211,10 +211,4 @@ bool ShadowFinder::update(const PreparedScene& scene, const EdgeObjects& objects
   return complete;
 }
 
-std::size_t ShadowFinder::triple_count() const {
-  std::size_t count = 0;
-  for (const auto& [key, pair] : pairs_) count += pair.receivers.size();
-  return count;
-}
-
 }  // namespace arris

@@ -49,7 +49,6 @@ class ShadowFinder {
   // Finds what is missing, up to about so many events; false if some of it waits.
   bool update(const PreparedScene& scene, const EdgeObjects& objects, std::size_t most_events);
   [[nodiscard]] const std::vector<WorldEdge>& edges() const { return edges_; }
-  [[nodiscard]] std::size_t triple_count() const;
 
  private:
   struct Pair {

@@ -23,7 +23,6 @@ class StillFilm {
   void clear();
   void add(std::size_t pixel, Rgb sum, std::uint32_t paths);
   [[nodiscard]] std::uint32_t paths_of(std::size_t pixel) const { return pixels_[pixel].paths; }
-  [[nodiscard]] bool is_empty() const { return total_ == 0; }
   // Of the pixel with the fewest.
   [[nodiscard]] std::uint32_t least_paths() const;
 
