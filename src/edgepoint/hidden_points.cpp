@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
+#include <optional>
 
 #include "edgepoint/shifted_word.h"
 
@@ -96,9 +97,10 @@ HWY_EXPORT(find_products_below);
 
 // Depths within what a steep surface gains over some pixels say nothing.
 constexpr float kPixelsDeep = 8;
-// So many samples around give a plane; fewer only a mean.
+// So many samples around give a plane.
 constexpr int kPlaneSamples = 6;
-constexpr int kFewSamples = 2;
+// Of places, in pixels.
+constexpr float kPlaceError = 0.25F;
 
 // Least squares of inverse depth over pixel offsets.
 class DepthFit {
@@ -114,23 +116,27 @@ class DepthFit {
     sx_ += dx * inverse;
     sy_ += dy * inverse;
   }
-  [[nodiscard]] int count() const { return count_; }
 
-  // The inverse depth at the middle, and how much it changes over a pixel in x and y together.
+  // The inverse depth at the middle, and how far it may be off. Nothing if the samples fix no plane.
   struct Result {
-    float inverse, slope;
+    float inverse, tolerance;
   };
-  [[nodiscard]] Result result() const {
+  [[nodiscard]] std::optional<Result> result() const {
+    if (count_ < kPlaneSamples) return std::nullopt;
     const float n = float(count_), mean = s_ / n;
-    if (count_ < kPlaneSamples) return {mean, 0};
     const float mx = x_ / n, my = y_ / n;
     const float a = xx_ - n * mx * mx, b = xy_ - n * mx * my, c = yy_ - n * my * my;
     const float determinant = a * c - b * b;
-    // Samples in a line fix no plane.
-    if (!(determinant > n)) return {mean, 0};
+    // Nearly in a line.
+    if (!(determinant > n)) return std::nullopt;
     const float p = sx_ - n * mx * mean, q = sy_ - n * my * mean;
     const float slope_x = (c * p - b * q) / determinant, slope_y = (a * q - b * p) / determinant;
-    return {mean - slope_x * mx - slope_y * my, std::abs(slope_x) + std::abs(slope_y)};
+    // The value is a sum of the samples' with weights, and the sum of their squares. A place is known to a quarter of
+    // a pixel, the middle's own too: each is off by an eighth at most, taken twice as the slope is off as well.
+    const float squares = 1 / n + (c * mx * mx - 2 * b * mx * my + a * my * my) / determinant;
+    const float slope = std::abs(slope_x) + std::abs(slope_y);
+    return Result{mean - slope_x * mx - slope_y * my,
+                  kPlaceError * slope * (1 + std::sqrt(n * squares))};
   }
 
  private:
@@ -138,11 +144,17 @@ class DepthFit {
   float x_ = 0, y_ = 0, xx_ = 0, xy_ = 0, yy_ = 0, s_ = 0, sx_ = 0, sy_ = 0;
 };
 
-bool is_hidden(const EdgePointImage& image, int x, int y, float depth, float pixel_size) {
+bool is_hidden(const EdgePointImage& image, int x, int y, float pixel_size) {
+  const PointKey own = image.points[image.offset(x, y)];
   DepthFit fit;
   const auto add = [&](int dx, int dy) {
     if (!image.samples.at(x + dx, y + dy)) return;
-    fit.add(float(dx), float(dy), 1 / image.points[image.offset(x + dx, y + dy)].depth());
+    const PointKey other = image.points[image.offset(x + dx, y + dy)];
+    const auto quarters = [](std::uint32_t a, std::uint32_t b) {
+      return 0.25F * (float(a) - float(b));
+    };
+    fit.add(float(dx) + quarters(other.cell() % 4, own.cell() % 4),
+            float(dy) + quarters(other.cell() / 4, own.cell() / 4), 1 / other.depth());
   };
   for (std::size_t k = 0; k < kReachOffsets; ++k) {
     const auto [dx, dy] = kReachOffset[k];
@@ -151,13 +163,9 @@ bool is_hidden(const EdgePointImage& image, int x, int y, float depth, float pix
     const bool inside = x - dx >= 0 && x - dx < image.width_px && y - dy >= 0;
     if (inside && image.reach.at(k, x - dx, y - dy)) add(-dx, -dy);
   }
-  if (fit.count() < kFewSamples) return false;
-  const auto [inverse, slope] = fit.result();
-  if (!(inverse > 0)) return false;
-  // A sample may lie anywhere in its pixel.
-  const float surface = 1 / inverse;
-  const float tolerance = surface * (kPixelsDeep * pixel_size + slope * surface);
-  return depth > surface + tolerance;
+  const std::optional<DepthFit::Result> surface = fit.result();
+  return surface &&
+         1 / own.depth() < surface->inverse / (1 + kPixelsDeep * pixel_size) - surface->tolerance;
 }
 
 // Rows of a band, with those around it.
@@ -208,7 +216,7 @@ class HiddenFinder {
     for (; deep != 0; deep &= deep - 1) {
       const int x = 64 * word + std::countr_zero(deep);
       const std::size_t at = image_.offset(x, y);
-      if (is_hidden(image_, x, y, image_.points[at].depth(), pixel_size_)) {
+      if (is_hidden(image_, x, y, pixel_size_)) {
         hidden_.push_back(std::uint32_t(at));
       }
     }

@@ -1,0 +1,352 @@
+// Points: kept, projected, found to be hidden, and made into colours.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <random>
+#include <vector>
+
+#include "edgepoint/classify.h"
+#include "edgepoint/complex_pixel.h"
+#include "edgepoint/edge_raster.h"
+#include "edgepoint/hidden_points.h"
+#include "edgepoint/interpolate.h"
+#include "edgepoint/kernel.h"
+#include "edgepoint/point_cache.h"
+#include "edgepoint/point_raster.h"
+#include "edgepoint/reach_planes.h"
+#include "edgepoint/sample_plan.h"
+
+namespace arris {
+namespace {
+
+constexpr int kWidth = 90, kHeight = 50;
+
+// x right, y down, z forward.
+PixelView make_view() {
+  PixelView view;
+  view.eye = {0.3, -0.2, -4};
+  view.width_px = kWidth;
+  view.height_px = kHeight;
+  view.pixel_from_world = Mat3d{{60, 0, 0}, {0, 60, 0}, {kWidth / 2.0, kHeight / 2.0, 1}};
+  return view;
+}
+
+std::vector<ShadedPoint> random_points(std::mt19937& random, int count) {
+  std::uniform_real_distribution<float> unit(-1, 1);
+  std::vector<ShadedPoint> points;
+  for (int i = 0; i < count; ++i) {
+    ShadedPoint p;
+    p.position.x = 4 * unit(random);
+    p.position.y = 3 * unit(random);
+    p.position.z = 5 * unit(random);
+    p.radiance = Rgb(float(i % 7) + 1);
+    p.object = std::uint32_t(i % 3);
+    if (i % 10 == 0) {
+      p.object = kFarObject;
+      p.position = normalize(p.position + Vec3f{0, 0, 6});
+    }
+    points.push_back(p);
+  }
+  return points;
+}
+
+TEST(PointCache, radiance_keeps_nine_bits_of_its_largest_channel) {
+  std::mt19937 random(1);
+  std::uniform_real_distribution<float> exponent(-12, 15), unit(0, 1);
+  for (int i = 0; i < 20'000; ++i) {
+    Rgb c;
+    const float scale = std::exp2(exponent(random));
+    c.x = scale * unit(random);
+    c.y = scale * unit(random);
+    c.z = scale * unit(random);
+    const Rgb back = unpack_radiance(pack_radiance(c));
+    const float step = max_component(c) / 256;
+    for (int k = 0; k < 3; ++k) ASSERT_NEAR(back[k], c[k], 0.5F * step * 1.001F + 1e-8F);
+  }
+  EXPECT_EQ(unpack_radiance(pack_radiance({})), Rgb());
+  EXPECT_EQ(unpack_radiance(pack_radiance({-1, NAN, 0})), Rgb());
+  EXPECT_EQ(max_component(unpack_radiance(pack_radiance(Rgb(1e9F)))), 65408);
+}
+
+TEST(PointCache, replaces_points_where_they_are_and_makes_room_when_full) {
+  std::mt19937 random(2);
+  PointCache cache(1000);
+  for (std::uint32_t frame = 0; frame < 40; ++frame) cache.add(random_points(random, 100), frame);
+  const std::size_t full = cache.size();
+  EXPECT_GE(full, 1000U);
+  EXPECT_LE(full, 1000U + 3 * kPointBlock);
+  ShadedPoint point = random_points(random, 2)[1];
+  point.replaces = 3;
+  point.object = cache.blocks()[0].is_far ? kFarObject : 1;
+  cache.add({&point, 1}, 40);
+  EXPECT_EQ(cache.size(), full);
+  EXPECT_EQ(cache.x()[3], point.position.x);
+  EXPECT_EQ(cache.born()[3], 40);
+}
+
+TEST(PointCache, moves_the_points_of_an_object_only) {
+  std::mt19937 random(3);
+  PointCache cache(1000), moved(1000);
+  const std::vector<ShadedPoint> points = random_points(random, 500);
+  cache.add(points, 1);
+  moved.add(points, 1);
+  std::vector<std::optional<Affine3d>> to_from(3);
+  to_from[1] = Affine3d{{}, {1, 2, 3}};
+  moved.move(to_from, 5);
+  int count = 0;
+  for (std::size_t b = 0; b < cache.blocks().size(); ++b) {
+    for (std::size_t i = b * kPointBlock; i < b * kPointBlock + cache.blocks()[b].count; ++i) {
+      const bool is_moved = moved.x()[i] != cache.x()[i];
+      count += is_moved ? 1 : 0;
+      if (!is_moved) continue;
+      EXPECT_FLOAT_EQ(moved.z()[i], cache.z()[i] + 3);
+      EXPECT_EQ(std::uint16_t(5 - moved.born()[i]), kStaleAge);
+      EXPECT_LE(moved.blocks()[b].lower.x, moved.x()[i]);
+      EXPECT_GE(moved.blocks()[b].upper.x, moved.x()[i]);
+    }
+  }
+  EXPECT_EQ(count, std::count_if(points.begin(), points.end(),
+                                 [](const ShadedPoint& p) { return p.object == 1; }));
+}
+
+TEST(PointRaster, keeps_the_nearest_point_of_each_pixel) {
+  std::mt19937 random(4);
+  const PixelView view = make_view();
+  PointCache cache(8000);
+  cache.add(random_points(random, 6000), 0);
+  std::vector<PointKey> points(std::size_t(kWidth) * kHeight), banded(points.size());
+  project_points(view, cache, {0, kHeight}, points);
+  for (const RowBand band : {RowBand{0, 7}, RowBand{7, 30}, RowBand{30, kHeight}}) {
+    project_points(view, cache, band, banded);
+  }
+  std::vector<double> nearest(points.size(), INFINITY);
+  int near_border = 0;
+  for (std::size_t b = 0; b < cache.blocks().size(); ++b) {
+    const PointBlock& block = cache.blocks()[b];
+    for (std::size_t i = b * kPointBlock; i < b * kPointBlock + block.count; ++i) {
+      const Vec3d p(cache.x()[i], cache.y()[i], cache.z()[i]);
+      const Vec3d q = view.pixel_from_world * (block.is_far ? p : p - view.eye);
+      if (q.z <= 0) continue;
+      const double x = q.x / q.z, y = q.y / q.z;
+      if (x < 0 || y < 0 || x >= kWidth || y >= kHeight) continue;
+      // Float and double may disagree about the pixel there.
+      const double slack = 1e-3;
+      if (std::abs(x - std::round(x)) < slack || std::abs(y - std::round(y)) < slack) {
+        ++near_border;
+        continue;
+      }
+      double& depth = nearest[std::size_t(y) * kWidth + std::size_t(x)];
+      depth = std::min(depth, block.is_far ? 1e30 : q.z);
+    }
+  }
+  int compared = 0, found = 0;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    EXPECT_FALSE(points[i] < banded[i] || banded[i] < points[i]);
+    found += points[i].is_none() ? 0 : 1;
+    if (std::isinf(nearest[i])) continue;
+    ASSERT_FALSE(points[i].is_none());
+    if (nearest[i] > 1e20) continue;
+    ASSERT_LE(points[i].depth(), nearest[i] * (1 + 1e-5));
+    compared += std::abs(points[i].depth() / nearest[i] - 1) < 1e-5 ? 1 : 0;
+  }
+  EXPECT_GT(compared, 300);
+  EXPECT_GE(compared + near_border + 200, found);
+}
+
+// Depths of points by pixel; 0: none. No edges.
+EdgePointImage image_of_depths(const std::vector<float>& depths,
+                               const std::vector<ScreenEdge>& edges = {}) {
+  EdgePointImage image(kWidth, kHeight);
+  for (std::size_t i = 0; i < depths.size(); ++i) {
+    if (depths[i] <= 0) continue;
+    image.points[i] = PointKey(std::bit_cast<std::uint32_t>(depths[i]), std::uint32_t(i), 5);
+  }
+  DepthCells depth(kWidth, kHeight);
+  const std::vector<PointKey> none(image.points.size());
+  for (int i = 0; i < depth.cell_rows(); ++i) depth.fill_cells(none, i);
+  for (int i = 0; i < depth.limit_rows(); ++i) depth.fill_limits(i, 0.01F);
+  rasterize_edges(edges, depth, {0, kHeight}, kWidth, kHeight, image.crossings);
+  classify_pixels({0, kHeight}, image);
+  find_reach(image.corners, {0, kHeight}, image.reach);
+  return image;
+}
+
+std::vector<std::uint32_t> hidden_in(const EdgePointImage& image, float pixel_size) {
+  DepthCells cells(kWidth, kHeight);
+  for (int i = 0; i < cells.cell_rows(); ++i) cells.fill_cells(image.points, i);
+  for (int i = 0; i < cells.limit_rows(); ++i) cells.fill_limits(i, pixel_size);
+  std::vector<std::uint32_t> hidden;
+  for (const RowBand band : {RowBand{0, 20}, RowBand{20, kHeight}}) {
+    const auto part = find_hidden_points(image, cells, band, pixel_size);
+    hidden.insert(hidden.end(), part.begin(), part.end());
+  }
+  return hidden;
+}
+
+TEST(HiddenPoints, points_of_one_plane_hide_none_of_each_other) {
+  std::mt19937 random(5);
+  std::uniform_real_distribution<float> unit(0, 1);
+  for (int run = 0; run < 30; ++run) {
+    std::vector<float> depths(std::size_t(kWidth) * kHeight);
+    std::vector<std::uint32_t> cells(depths.size());
+    // Inverse depth is linear in the picture; the last runs are seen at a grazing angle.
+    const float slope = run < 20 ? 0.02F * unit(random) : 0.019F;
+    for (int y = 0; y < kHeight; ++y) {
+      for (int x = 0; x < kWidth; ++x) {
+        if (unit(random) > 0.4F) continue;
+        const float within = unit(random);
+        const std::size_t at = std::size_t(y) * kWidth + std::size_t(x);
+        depths[at] = 1 / (0.05F + slope * (float(y) + within));
+        cells[at] = 4 * std::uint32_t(4 * within) + std::uint32_t(x % 4);
+      }
+    }
+    EdgePointImage image = image_of_depths(depths);
+    for (std::size_t i = 0; i < depths.size(); ++i) {
+      if (depths[i] <= 0) continue;
+      image.points[i] =
+          PointKey(std::bit_cast<std::uint32_t>(depths[i]), std::uint32_t(i), cells[i]);
+    }
+    EXPECT_TRUE(hidden_in(image, 0.003F).empty()) << run << " " << slope;
+  }
+}
+
+TEST(HiddenPoints, what_shows_through_a_wall_is_found_but_not_beyond_an_edge) {
+  std::mt19937 random(6);
+  std::uniform_real_distribution<float> unit(0, 1);
+  std::vector<float> depths(std::size_t(kWidth) * kHeight);
+  int through = 0;
+  for (int y = 0; y < kHeight; ++y) {
+    for (int x = 0; x < kWidth; ++x) {
+      const float u = unit(random);
+      float& depth = depths[std::size_t(y) * kWidth + std::size_t(x)];
+      // On the left a wall at 2 with some points at 5 between; on the right the room behind it.
+      depth = x < 45 ? (u < 0.4F ? 2.0F : u < 0.46F ? 5.0F : 0.0F) : u < 0.4F ? 5.0F : 0.0F;
+      through += x < 45 && depth == 5 ? 1 : 0;
+    }
+  }
+  const ScreenEdge edge{45.5F, -1, 1, 45.5F, kHeight + 1, 1};
+  const EdgePointImage image = image_of_depths(depths, {edge});
+  const std::vector<std::uint32_t> hidden = hidden_in(image, 0.003F);
+  int right = 0;
+  for (const std::uint32_t at : hidden) {
+    ASSERT_EQ(depths[at], 5);
+    right += at % kWidth > 45 ? 1 : 0;
+  }
+  EXPECT_EQ(right, 0);
+  EXPECT_GT(double(hidden.size()), 0.9 * through);
+}
+
+std::vector<ScreenEdge> random_edges(std::mt19937& random, int count) {
+  std::uniform_real_distribution<float> unit(0, 1);
+  std::vector<ScreenEdge> edges;
+  for (int i = 0; i < count; ++i) {
+    ScreenEdge e;
+    e.x0 = unit(random) * kWidth;
+    e.y0 = unit(random) * kHeight;
+    e.x1 = e.x0 + 30 * unit(random) - 15;
+    e.y1 = e.y0 + 30 * unit(random) - 15;
+    e.inverse_depth0 = e.inverse_depth1 = 1;
+    edges.push_back(e);
+  }
+  return edges;
+}
+
+TEST(Interpolate, takes_the_weighted_mean_of_what_is_reached) {
+  std::mt19937 random(7);
+  std::uniform_real_distribution<float> unit(0, 1);
+  std::vector<float> depths(std::size_t(kWidth) * kHeight);
+  for (float& depth : depths) depth = unit(random) < 0.3F ? 1.0F : 0.0F;
+  const EdgePointImage image = image_of_depths(depths, random_edges(random, 40));
+  ColorRows colors(kHeight + 8, kWidth);
+  std::vector<Rgb> values(depths.size());
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    values[i].x = unit(random);
+    values[i].y = unit(random);
+    values[i].z = unit(random);
+    const ColorRow row = colors.row(int(i / kWidth));
+    row.r[i % kWidth] = values[i].x;
+    row.g[i % kWidth] = values[i].y;
+    row.b[i % kWidth] = values[i].z;
+  }
+  ColorRows out(1, kWidth);
+  std::vector<float> weight(kWidth + 64);
+  int apart = 0;
+  for (int y = 0; y < kHeight; ++y) {
+    interpolate_row(image, y, colors, out.row(0), weight.data());
+    for (int x = 0; x < kWidth; ++x) {
+      const bool complex = image.codes[image.offset(x, y)].is_complex();
+      Rgb sum;
+      float total = 0;
+      const auto add = [&](int dx, int dy, bool reached) {
+        const int px = x + dx, py = y + dy;
+        if (px < 0 || py < 0 || px >= kWidth || py >= kHeight) return;
+        if (!image.samples.at(px, py)) return;
+        apart += reached || complex ? 0 : 1;
+        if (!reached && !complex) return;
+        sum += values[image.offset(px, py)] * kernel_weight(dx, dy);
+        total += kernel_weight(dx, dy);
+      };
+      add(0, 0, true);
+      for (std::size_t k = 0; k < kReachOffsets; ++k) {
+        const auto [dx, dy] = kReachOffset[k];
+        add(dx, dy, image.reach.at(k, x, y));
+        const bool inside = x - dx >= 0 && x - dx < kWidth && y - dy >= 0;
+        add(-dx, -dy, inside && image.reach.at(k, x - dx, y - dy));
+      }
+      ASSERT_NEAR(weight[std::size_t(x)], total, 1e-5);
+      if (!(total > 0)) continue;
+      ASSERT_NEAR(out.row(0).r[x], sum.x / total, 1e-5) << x << " " << y;
+      ASSERT_NEAR(out.row(0).b[x], sum.z / total, 1e-5) << x << " " << y;
+    }
+  }
+  EXPECT_GT(apart, 1000);
+}
+
+// Two colours on the two sides of a wire thinner than a pixel: the pixel is a mixture of the sides and never of
+// anything beyond them; where all is of one colour, so is it.
+TEST(ComplexPixel, mixes_the_colours_around_it) {
+  std::vector<float> depths(std::size_t(kWidth) * kHeight, 1.0F);
+  const ScreenEdge left{40.3F, -1, 1, 40.35F, kHeight + 1, 1},
+      right{40.6F, -1, 1, 40.65F, kHeight + 1, 1};
+  const EdgePointImage image = image_of_depths(depths, {left, right});
+  ColorRows colors(kHeight, kWidth);
+  for (int y = 0; y < kHeight; ++y) {
+    const ColorRow row = colors.row(y);
+    for (int x = 0; x < kWidth; ++x) {
+      row.r[x] = x <= 40 ? 1 : 0;
+      row.g[x] = x <= 40 ? 0 : 1;
+      row.b[x] = 0.25F;
+    }
+  }
+  for (int y = 5; y < 40; ++y) {
+    ASSERT_TRUE(image.codes[image.offset(40, y)].is_complex());
+    const Rgb c = reconstruct_complex_pixel(image, 40, y, colors, {0.5F, 0.5F, 0.25F});
+    EXPECT_NEAR(c.x + c.y, 1, 1e-5);
+    EXPECT_NEAR(c.z, 0.25F, 1e-6);
+    // 0.3 of the left, 0.4 of the right, and the wire between, of which nothing is known.
+    EXPECT_GT(c.x, 0.25F);
+    EXPECT_GT(c.y, 0.35F);
+  }
+}
+
+TEST(SamplePlan, asks_in_proportion_and_about_as_often_as_told) {
+  std::vector<std::uint8_t> wanted(200UL * 100UL);
+  for (std::size_t i = 0; i < wanted.size(); ++i) wanted[i] = i % 200 < 100 ? 10 : 40;
+  std::size_t left = 0, all = 0;
+  for (std::uint32_t frame = 0; frame < 64; ++frame) {
+    const auto plan = plan_samples(wanted, {200, 100, 500, frame});
+    EXPECT_NEAR(double(plan.size()), 500, 120);
+    all += plan.size();
+    for (const std::uint32_t at : plan) left += at % 200 < 100 ? 1 : 0;
+  }
+  EXPECT_NEAR(double(all), 64 * 500, 0.03 * 64 * 500);
+  EXPECT_NEAR(double(left) / double(all), 0.2, 0.01);
+}
+
+}  // namespace
+}  // namespace arris
