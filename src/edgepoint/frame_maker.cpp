@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <iterator>
+#include <utility>
 
 #include "base/check.h"
 #include "base/parallel_for.h"
@@ -117,7 +118,7 @@ FrameReport FrameMaker::make(const PixelView& view, std::span<const WorldEdge> e
   }
   cache.set_seen(seen);
   report.unresolved = unresolved.size();
-  fill_holes(unresolved, picture);
+  fill_holes(image_, std::move(unresolved), picture);
   const double took = watch.lap();
   const double part = spent.total() > 0 ? took / spent.total() : 0;
   report.times.interpolation = part * spent.interpolation;

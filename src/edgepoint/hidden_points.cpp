@@ -98,7 +98,7 @@ HWY_EXPORT(find_products_below);
 // Depths within what a steep surface gains over some pixels say nothing.
 constexpr float kPixelsDeep = 8;
 // So many samples around give a plane.
-constexpr int kPlaneSamples = 6;
+constexpr int kPlaneSamples = 4;
 // Of places, in pixels.
 constexpr float kPlaceError = 0.25F;
 

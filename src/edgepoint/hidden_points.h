@@ -4,7 +4,7 @@
 //            be reached from it: with no edge between, they are on one surface, whose inverse depths are linear in the
 //            picture where it is flat. A plane is fitted to those.
 // Guarantee  points of one plane hide none of each other, however steep the view (tests/edgepoint/points_test.cpp)
-// Limits     needs six samples around that are not in a line; a point with fewer is kept
+// Limits     needs four samples around that are not in a line; a point with fewer is kept
 // Cost       a look at the depths around for each point; a fit where they differ
 // Source     the Render Cache culls by the mean depth of 3 × 3 pixels (Walter, Drettakis, Greenberg 2002), which
 //            knows no edges and takes points along silhouettes

@@ -1,18 +1,20 @@
 // hole_filler.h — colours for pixels that no sample reaches
-// What       the mean colour of the nearest resolved pixels of the picture, found on ever coarser grids, so that what
-//            comes into view is not black until its first sample
-// Limits     knows no edges: it is a guess for a frame or two
-// Cost       nothing without holes, else one pass over the picture
+// What       takes over the colours of pixels that no edge parts from a hole, step by step, so that what comes into view
+//            keeps its outline until its first samples; where there are none, the mean of the nearest pixels, found on
+//            ever coarser grids
+// Guarantee  colours cross no edge, but in regions in which nothing is known (tests/edgepoint/points_test.cpp)
+// Cost       nothing without holes; the grids one pass over the picture
 #pragma once
 
 #include <cstdint>
-#include <span>
+#include <vector>
 
 #include "arris/image.h"
+#include "edgepoint/edge_point_image.h"
 
 namespace arris {
 
 // holes: offsets of pixels, each once.
-void fill_holes(std::span<const std::uint32_t> holes, Image& picture);
+void fill_holes(const EdgePointImage& image, std::vector<std::uint32_t> holes, Image& picture);
 
 }  // namespace arris

@@ -14,6 +14,7 @@
 #include "edgepoint/complex_pixel.h"
 #include "edgepoint/edge_raster.h"
 #include "edgepoint/hidden_points.h"
+#include "edgepoint/hole_filler.h"
 #include "edgepoint/interpolate.h"
 #include "edgepoint/kernel.h"
 #include "edgepoint/point_cache.h"
@@ -331,6 +332,32 @@ TEST(ComplexPixel, mixes_the_colours_around_it) {
     // 0.3 of the left, 0.4 of the right, and the wire between, of which nothing is known.
     EXPECT_GT(c.x, 0.25F);
     EXPECT_GT(c.y, 0.35F);
+  }
+}
+
+// A line across the picture, points far from it on the left alone: holes on the left take its colours and no others.
+TEST(HoleFiller, colours_cross_no_edge) {
+  std::vector<float> depths(std::size_t(kWidth) * kHeight, 1.0F);
+  const ScreenEdge edge{40.5F, -1, 1, 40.5F, kHeight + 1, 1};
+  const EdgePointImage image = image_of_depths(depths, {edge});
+  Image picture(kWidth, kHeight, 3);
+  std::vector<std::uint32_t> holes;
+  for (int y = 0; y < kHeight; ++y) {
+    for (int x = 0; x < kWidth; ++x) {
+      picture.at(x, y, x <= 40 ? 0 : 1) = 1;
+      if (x < 30 || x > 52) continue;
+      holes.push_back(std::uint32_t(image.offset(x, y)));
+      picture.at(x, y, 2) = 7;  // what no hole keeps
+    }
+  }
+  fill_holes(image, holes, picture);
+  for (int y = 0; y < kHeight; ++y) {
+    for (int x = 30; x <= 52; ++x) {
+      EXPECT_EQ(picture.at(x, y, 2), 0);
+      if (x == 40) continue;  // the edge's own pixels
+      EXPECT_EQ(picture.at(x, y, 0), x < 40 ? 1 : 0) << x;
+      EXPECT_EQ(picture.at(x, y, 1), x < 40 ? 0 : 1) << x;
+    }
   }
 }
 
