@@ -1,7 +1,7 @@
 // hole_filler.h — colours for pixels that no sample reaches
-// What       takes over the colours of pixels that no edge parts from a hole, step by step, so that what comes into view
-//            keeps its outline until its first samples; where there are none, the mean of the nearest pixels, found on
-//            ever coarser grids
+// What       takes over the colours of pixels that no edge parts from a hole, step by step, so that what comes into
+//            view keeps its outline until its first samples; where there are none, the mean of the nearest pixels,
+//            found on ever coarser grids
 // Guarantee  colours cross no edge, but in regions in which nothing is known (tests/edgepoint/points_test.cpp)
 // Cost       nothing without holes; the grids one pass over the picture
 #pragma once
