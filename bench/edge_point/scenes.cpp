@@ -60,15 +60,48 @@ Mesh make_knot_mesh(int around, int along) {
   });
 }
 
+// A ball whose surface is moved in and out; normals are means of those of the faces around.
+Mesh make_ball_mesh(int around, int rows, const std::function<Vec3d(Vec3d)>& at) {
+  Mesh mesh;
+  const auto add = [&](double theta, double phi) {
+    mesh.positions.push_back(Vec3f(
+        at({std::sin(theta) * std::cos(phi), std::sin(theta) * std::sin(phi), std::cos(theta)})));
+  };
+  add(0, 0);
+  for (int j = 1; j < rows; ++j) {
+    for (int i = 0; i < around; ++i) add(kPi * j / rows, 2 * kPi * i / around);
+  }
+  add(kPi, 0);
+  const auto last = std::uint32_t(mesh.positions.size() - 1);
+  const auto vertex = [&](int i, int j) {
+    return j == 0 ? 0 : j == rows ? last : std::uint32_t(1 + (j - 1) * around + i % around);
+  };
+  for (int j = 0; j < rows; ++j) {
+    for (int i = 0; i < around; ++i) {
+      const std::uint32_t a = vertex(i, j), b = vertex(i + 1, j), c = vertex(i, j + 1),
+                          d = vertex(i + 1, j + 1);
+      // At the poles one of the two has no area.
+      if (j + 1 < rows) mesh.triangles.push_back({a, c, d});
+      if (j > 0) mesh.triangles.push_back({a, d, b});
+    }
+  }
+  std::vector<Vec3d> normals(mesh.positions.size());
+  for (const Triangle& t : mesh.triangles) {
+    const Vec3d p(mesh.positions[t[0]]), q(mesh.positions[t[1]]), r(mesh.positions[t[2]]);
+    for (const std::uint32_t v : t) normals[v] += cross(q - p, r - p);
+  }
+  for (const Vec3d n : normals) mesh.normals.push_back(Vec3f(normalize(n)));
+  return mesh;
+}
+
 // Something of the size and irregularity of a scanned head: curls, brows, pores.
-Mesh make_head_mesh(int around, int along) {
-  return make_wrapped_mesh(around, along, [](double u, double v) {
-    const double theta = v / 2;
-    const Vec3d n{std::sin(theta) * std::cos(u), std::sin(theta) * std::sin(u), std::cos(theta)};
+Mesh make_head_mesh(int around, int rows) {
+  return make_ball_mesh(around, rows, [](Vec3d n) {
     double r = 1 + 0.12 * n.z - 0.1 * n.x * n.x;
-    r += 0.16 * std::exp(-12 * ((n.x - 0.2) * (n.x - 0.2) + n.z * n.z)) * (n.y < 0 ? 1 : 0.2);
+    r += 0.16 * std::exp(-12 * ((n.x - 0.2) * (n.x - 0.2) + n.z * n.z)) *
+         (n.y < 0 ? 1 - std::exp(20 * n.y) : 0);
     const double curls = n.z > 0.1 ? n.z - 0.1 : 0;
-    r += 0.22 * curls * std::sin(11 * u + 5 * std::sin(7 * theta)) * std::sin(13 * theta);
+    r += 0.22 * curls * std::sin(9 * n.x + 5 * std::sin(7 * n.z)) * std::sin(13 * n.y + 3 * n.z);
     r += 0.01 * std::sin(37 * n.x + 5 * n.y) * std::sin(41 * n.y) * std::sin(43 * n.z);
     r += 0.002 * std::sin(211 * n.x + 17 * n.z) * std::sin(223 * n.y) * std::sin(199 * n.z);
     return n * r;
@@ -153,7 +186,7 @@ FlightScene make_rooms() {
     b.box({0.15, 1.4, 2.7}, {x, -1.3, 1.35}, wall);
     b.box({0.15, 1.2, 0.6}, {x, 0, 2.4}, wall);
   }
-  const MeshId ball = b.mesh(make_sphere_mesh(0.18, 32)),
+  const MeshId ball = b.mesh(make_sphere_mesh(0.18, 36)),
                ring = b.mesh(make_torus_mesh(0.2, 0.06, 24, 12));
   for (const double x : {-4.0, 0.0, 4.0}) {
     add_table(b, {x, 1.0, 0}, wood);
@@ -205,7 +238,7 @@ FlightScene make_furnished_room() {
   const MeshId hoop = b.mesh(make_torus_mesh(0.22, 0.006, 96, 12));
   const MeshId small = b.mesh(make_torus_mesh(0.07, 0.008, 64, 12));
   const MeshId rod = b.mesh(make_cone_mesh({0.006, 0.006, 0.5, 24}));
-  const MeshId bowl = b.mesh(make_sphere_mesh(0.06, 48));
+  const MeshId bowl = b.mesh(make_sphere_mesh(0.06, 58));
   for (int i = 0; i < 5; ++i) b.put(hoop, wire, {{}, {0, 0.8, 0.76 + 0.11 * i}});
   for (int i = 0; i < 18; ++i) {
     const double a = 2 * kPi * i / 18;
@@ -270,7 +303,7 @@ FlightScene make_flight_scene(const std::string& name) {
   if (name == "rooms") return make_rooms();
   if (name == "chains") return make_chains();
   if (name == "furnished") return make_furnished_room();
-  if (name == "head") return around_model("head", make_head_mesh(354, 353));
+  if (name == "head") return around_model("head", make_head_mesh(354, 354));
   if (name == "grid") return make_grid();
   throw std::runtime_error("there is no scene " + name +
                            "; there are rooms, chains, furnished, head, grid");
