@@ -88,9 +88,11 @@ void print_errors(const char* title, const Arguments& arguments,
   say("scene      with edges        without edges     not interpolated  with / without");
   for (const FlightScene& scene : make_scenes(arguments)) {
     const FlightErrors e = measure(scene, arguments.quality);
-    say(fmt::format("{:10} {:.4f} ({:.4f})   {:.4f} ({:.4f})   {:.4f} ({:.4f})   {:.2f}",
-                    scene.name, e.with_edges, e.flip_with, e.without_edges, e.flip_without, e.noisy,
-                    e.flip_noisy, e.with_edges / e.without_edges));
+    const std::string noisy =
+        e.noisy > 0 ? fmt::format("{:.4f} ({:.4f})", e.noisy, e.flip_noisy) : "-";
+    say(fmt::format("{:10} {:.4f} ({:.4f})   {:.4f} ({:.4f})   {:17} {:.2f}", scene.name,
+                    e.with_edges, e.flip_with, e.without_edges, e.flip_without, noisy,
+                    e.with_edges / e.without_edges));
   }
 }
 
