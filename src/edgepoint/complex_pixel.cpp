@@ -1,5 +1,6 @@
 #include "edgepoint/complex_pixel.h"
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -36,18 +37,17 @@ struct Subpixels {
   std::array<std::uint16_t, std::size_t(kSide* kRow)> edge{};
   std::array<bool, std::size_t(kSide* kRow)> primary_is_a{};
   std::array<Word, 4> primary{}, secondary{};
-  struct Sample {
-    int bit;
-    Rgb color;
-  };
-  std::array<Sample, 9> samples;
-  std::size_t sample_count = 0;
+  // Whose primary region's colour is known, and what it counts.
+  Word known = 0;
+  std::array<Rgb, std::size_t(kSide* kRow)> color;
+  std::array<float, std::size_t(kSide* kRow)> weight{};
 };
 
 class Builder {
  public:
-  Builder(const EdgePointImage& image, int x, int y, ColorRows& samples)
-      : image_(image), x_(x), y_(y), samples_(samples) {}
+  Builder(const EdgePointImage& image, int x, int y, ColorRows& samples,
+          const PrimaryNeighborhood& around)
+      : image_(image), x_(x), y_(y), samples_(samples), around_(around) {}
 
   Subpixels build() {
     for (int j = 0; j < kSide; ++j) {
@@ -87,8 +87,10 @@ class Builder {
                                                      : region == RegionOf::a);
     }
     if (has_point && region != RegionOf::ambiguous) {
-      const ColorRow row = samples_.row(py);
-      out_.samples[out_.sample_count++] = {bit, {row.r[px], row.g[px], row.b[px]}};
+      set_color(bit, samples_.row(py), px, 1);
+    } else if (!code.is_complex() && lies_in_primary(px, py, i, j, code)) {
+      const PrimaryRows& row = py < y_ ? around_.above : py > y_ ? around_.below : around_.here;
+      if (row.weight[px] > 0) set_color(bit, row.color, px, std::min(row.weight[px], 1.0F));
     }
     out_.edge[std::size_t(bit)] = std::uint16_t(code.edge());
     out_.primary_is_a[std::size_t(bit)] = code.primary_is_a();
@@ -102,6 +104,27 @@ class Builder {
       out_.primary[k] |= is_primary << unsigned(bit);
       out_.secondary[k] |= (is_primary ^ 1U) << unsigned(bit);
     }
+  }
+
+  void set_color(int bit, ColorRow row, int px, float weight) {
+    out_.known |= Word{1} << unsigned(bit);
+    out_.color[std::size_t(bit)] = {row.r[px], row.g[px], row.b[px]};
+    out_.weight[std::size_t(bit)] = weight;
+  }
+
+  // Whether what is primary of a subpixel is part of what is primary of its pixel.
+  [[nodiscard]] bool lies_in_primary(int px, int py, int i, int j, PixelCode sub) const {
+    const PixelCode whole = image_.codes[image_.offset(px, py)];
+    if (whole.is_complex()) return false;
+    if (whole.is_empty()) return sub.is_empty();
+    if (!sub.is_empty()) return false;
+    const EdgeTables& tables = edge_tables();
+    const std::uint32_t first = 8U * unsigned(j % 2) + 2U * unsigned(i % 2);
+    const RegionOf primary = whole.primary_is_a() ? RegionOf::a : RegionOf::b;
+    for (const std::uint32_t cell : {first, first + 1, first + 4, first + 5}) {
+      if (tables.region_of(whole.edge(), cell) != primary) return false;
+    }
+    return true;
   }
 
   // Of a point that lies in the subpixel, to a quarter of it: each quarter is four cells of the tables.
@@ -120,6 +143,7 @@ class Builder {
   const EdgePointImage& image_;
   int x_, y_;
   ColorRows& samples_;
+  const PrimaryNeighborhood& around_;
   Subpixels out_;
 };
 
@@ -141,32 +165,27 @@ Matrices find_matrices(const Subpixels& s) {
   return HWY_NAMESPACE::chain_reach<Word>(right, down);
 }
 
-// Whether a region of one subpixel reaches the primary region of another.
-bool reaches(const Matrices& matrices, int from, int to, bool from_primary) {
-  const int dx = to % kRow - from % kRow, dy = to / kRow - from / kRow;
-  if (dx == 0 && dy == 0) return from_primary;
-  if (dx < -2 || dx > 2 || dy < -2 || dy > 2) return false;
-  for (std::size_t k = 0; k < kReachOffsets; ++k) {
-    if (kReachOffset[k].dx == dx && kReachOffset[k].dy == dy) {
-      return ((from_primary ? matrices[k].pp : matrices[k].sp) >> unsigned(from) & 1U) != 0;
-    }
-    if (kReachOffset[k].dx == -dx && kReachOffset[k].dy == -dy) {
-      return ((from_primary ? matrices[k].pp : matrices[k].ps) >> unsigned(to) & 1U) != 0;
-    }
-  }
-  return false;
-}
-
 std::optional<Rgb> region_color(const Subpixels& s, const Matrices& matrices, int bit,
                                 bool of_primary) {
   Rgb sum;
   float weight = 0;
-  for (std::size_t i = 0; i < s.sample_count; ++i) {
-    const int at = s.samples[i].bit;
-    if (!reaches(matrices, bit, at, of_primary)) continue;
-    const float w = kernel_weight(at % kRow - bit % kRow, at / kRow - bit / kRow);
-    sum += s.samples[i].color * w;
+  const auto add = [&](int at, float kernel) {
+    const float w = kernel * s.weight[std::size_t(at)];
+    sum += s.color[std::size_t(at)] * w;
     weight += w;
+  };
+  if (of_primary && (s.known >> unsigned(bit) & 1U)) add(bit, kernel_weight(0, 0));
+  for (std::size_t k = 0; k < kReachOffsets; ++k) {
+    const auto [dx, dy] = kReachOffset[k];
+    const int step = bit_of(dx, dy);
+    const auto& m = matrices[k];
+    const Word there = of_primary ? m.pp : m.sp, back = of_primary ? m.pp : m.ps;
+    if ((there >> unsigned(bit) & s.known >> unsigned(bit + step) & 1U) != 0) {
+      add(bit + step, kernel_weight(dx, dy));
+    }
+    if (bit >= step && (back & s.known) >> unsigned(bit - step) & 1U) {
+      add(bit - step, kernel_weight(dx, dy));
+    }
   }
   if (!(weight > 0)) return std::nullopt;
   return sum * (1 / weight);
@@ -175,8 +194,8 @@ std::optional<Rgb> region_color(const Subpixels& s, const Matrices& matrices, in
 }  // namespace
 
 Rgb reconstruct_complex_pixel(const EdgePointImage& image, int x, int y, ColorRows& samples,
-                              Rgb fallback) {
-  const Subpixels s = Builder(image, x, y, samples).build();
+                              const PrimaryNeighborhood& around, Rgb fallback) {
+  const Subpixels s = Builder(image, x, y, samples, around).build();
   const Matrices matrices = find_matrices(s);
   Rgb sum;
   for (int j = 2; j < 4; ++j) {

@@ -8,6 +8,7 @@
 #pragma once
 
 #include "arris/math.h"
+#include "edgepoint/antialias.h"
 #include "edgepoint/color_rows.h"
 #include "edgepoint/edge_point_image.h"
 
@@ -16,6 +17,6 @@ namespace arris {
 // samples: the colours of the points of rows y − 1 to y + 1, also of those that classification has rejected.
 // fallback: the pixel's colour with all samples taken as reachable.
 Rgb reconstruct_complex_pixel(const EdgePointImage& image, int x, int y, ColorRows& samples,
-                              Rgb fallback);
+                              const PrimaryNeighborhood& around, Rgb fallback);
 
 }  // namespace arris

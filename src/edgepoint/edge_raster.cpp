@@ -12,6 +12,9 @@ namespace {
 
 // Nearer to the eye, in parts of the edge's depth, an edge is cut off.
 constexpr double kNear = 1e-6;
+// Pixels. Interpolation has a reach of two.
+constexpr double kWidestPenumbra = 2;
+constexpr double kNarrowestPenumbra = 1;
 // Pixels around the picture that edges are drawn to.
 constexpr double kAround = 2;
 
@@ -155,6 +158,22 @@ ScreenEdge project_edge(const PixelView& view, const WorldEdge& edge) {
   const Vec3d q = clip.to == 1 ? b : a + (b - a) * clip.to;
   return {on_grid(p.x / p.z), on_grid(p.y / p.z), float(1 / p.z),
           on_grid(q.x / q.z), on_grid(q.y / q.z), float(1 / q.z)};
+}
+
+ScreenEdge project_edge(const PixelView& view, const SoftEdge& edge) {
+  const ScreenEdge e = project_edge(view, edge.edge);
+  if (edge.penumbra == Vec3f{}) return e;
+  const Vec3d middle = (Vec3d(edge.edge.a) + Vec3d(edge.edge.b)) / 2;
+  const Vec3d beyond = project(view, middle + Vec3d(edge.penumbra));
+  const Vec2d along{double(e.x1) - double(e.x0), double(e.y1) - double(e.y0)};
+  const double length = std::hypot(along.x, along.y);
+  if (length == 0) return {};
+  // The other side lies behind the eye.
+  if (!(beyond.z > 0)) return {};
+  const Vec2d across{beyond.x / beyond.z - double(e.x0), beyond.y / beyond.z - double(e.y0)};
+  const double width = std::abs(across.x * along.y - across.y * along.x) / length;
+  if (width > kWidestPenumbra || (edge.is_umbra && width < kNarrowestPenumbra)) return {};
+  return e;
 }
 
 void rasterize_edges(std::span<const ScreenEdge> edges, const DepthCells& depth, RowBand band,

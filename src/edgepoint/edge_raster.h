@@ -23,6 +23,13 @@ struct WorldEdge {
   Vec3f a, b;
 };
 
+// Where a shadow begins or ends.
+struct SoftEdge {
+  WorldEdge edge;
+  Vec3f penumbra;  // from its middle to the shadow's other edge; 0 if hard
+  bool is_umbra = false;
+};
+
 // In picture coordinates; inverse depths are linear along it.
 struct ScreenEdge {
   float x0 = 0, y0 = 0, inverse_depth0 = 0;
@@ -31,6 +38,10 @@ struct ScreenEdge {
 
 // An edge of no length where nothing of it is in the picture.
 ScreenEdge project_edge(const PixelView& view, const WorldEdge& edge);
+
+// Of no length also where the edge does not matter: the penumbra is so wide in the picture that light changes little
+// from pixel to pixel, or so narrow that its outer edge stands for both.
+ScreenEdge project_edge(const PixelView& view, const SoftEdge& edge);
 
 // Clears and fills the crossings of a band's rows. Bands share nothing.
 void rasterize_edges(std::span<const ScreenEdge> edges, const DepthCells& depth, RowBand band,

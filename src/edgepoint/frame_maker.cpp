@@ -61,10 +61,13 @@ void FrameMaker::find_depth(const PixelView& view, int threads) {
                [&](std::size_t i) { depth_.fill_limits(int(i), size); });
 }
 
-void FrameMaker::rasterize(const PixelView& view, std::span<const WorldEdge> edges, int threads) {
-  screen_edges_.resize(edges.size());
-  parallel_for(edges.size(), {.grain = 1024, .threads = threads},
-               [&](std::size_t i) { screen_edges_[i] = project_edge(view, edges[i]); });
+void FrameMaker::rasterize(const PixelView& view, const FrameEdges& edges, int threads) {
+  const std::size_t surfaces = edges.surfaces.size();
+  screen_edges_.resize(surfaces + edges.shadows.size());
+  parallel_for(screen_edges_.size(), {.grain = 1024, .threads = threads}, [&](std::size_t i) {
+    screen_edges_[i] = i < surfaces ? project_edge(view, edges.surfaces[i])
+                                    : project_edge(view, edges.shadows[i - surfaces]);
+  });
   std::erase_if(screen_edges_, [](const ScreenEdge& e) { return e.x0 == e.x1 && e.y0 == e.y1; });
   parallel_for(bands_.size(), {.grain = 1, .threads = threads}, [&](std::size_t i) {
     rasterize_edges(screen_edges_, depth_, bands_[i], image_.width_px, image_.height_px,
@@ -72,7 +75,7 @@ void FrameMaker::rasterize(const PixelView& view, std::span<const WorldEdge> edg
   });
 }
 
-FrameReport FrameMaker::make(const PixelView& view, std::span<const WorldEdge> edges,
+FrameReport FrameMaker::make(const PixelView& view, const FrameEdges& edges,
                              PointCache& cache, const FrameSettings& settings, Image& picture) {
   ARRIS_CHECK(view.width_px == image_.width_px && view.height_px == image_.height_px,
               double(view.width_px), double(view.height_px));

@@ -40,12 +40,17 @@ struct FrameSettings {
   int threads = 0;  // 0: all
 };
 
+struct FrameEdges {
+  std::span<const WorldEdge> surfaces;
+  std::span<const SoftEdge> shadows;
+};
+
 class FrameMaker {
  public:
   FrameMaker(int width_px, int height_px);
 
   // The view's size must be the maker's. Tells the cache what was seen of it.
-  FrameReport make(const PixelView& view, std::span<const WorldEdge> edges, PointCache& cache,
+  FrameReport make(const PixelView& view, const FrameEdges& edges, PointCache& cache,
                    const FrameSettings& settings, Image& picture);
 
   [[nodiscard]] const EdgePointImage& image() const { return image_; }
@@ -54,7 +59,7 @@ class FrameMaker {
 
  private:
   void find_depth(const PixelView& view, int threads);
-  void rasterize(const PixelView& view, std::span<const WorldEdge> edges, int threads);
+  void rasterize(const PixelView& view, const FrameEdges& edges, int threads);
 
   EdgePointImage image_;
   DepthCells depth_;

@@ -19,7 +19,7 @@ struct EventPiece {
   double s0 = 0, s1 = 0;  // s0 < s1
   double k0 = 0, k1 = 0;
   std::uint32_t item = 0;      // its own number
-  std::uint32_t receiver = 0;  // the caller's
+  std::uint32_t receiver = 0, face = 0;  // the caller's
 
   [[nodiscard]] double nearness(double s) const {
     return s <= s0 ? k0 : s >= s1 ? k1 : k0 + (k1 - k0) * ((s - s0) / (s1 - s0));

@@ -111,7 +111,7 @@ class Band {
     for_crossed(y, [&](int x) {
       if (settings_.complex_filter && image_.codes[image_.offset(x, y)].is_complex()) {
         const Rgb fallback{here.color.r[x], here.color.g[x], here.color.b[x]};
-        set_pixel(out + 3 * x, reconstruct_complex_pixel(image_, x, y, samples_, fallback));
+        set_pixel(out + 3 * x, reconstruct_complex_pixel(image_, x, y, samples_, rows, fallback));
       }
     });
     report_.times.complex += lap();

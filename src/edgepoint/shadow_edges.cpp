@@ -8,6 +8,9 @@
 namespace arris {
 namespace {
 
+// Where the penumbra's other side is without end. Far beyond any picture, well within the range of float.
+constexpr double kFarOut = 1e12;
+
 struct Stretch {
   double s0, s1;
 };
@@ -23,6 +26,30 @@ Parts split_at(const EventPiece& p, double limit) {
   const double s = p.s0 + (p.s1 - p.s0) * ((limit - p.k0) / (p.k1 - p.k0));
   if (p.k0 > limit) return {Stretch{p.s0, s}, Stretch{s, p.s1}};
   return {Stretch{s, p.s1}, Stretch{p.s0, s}};
+}
+
+// Normal of a face in the world; of any length.
+Vec3d face_normal(const ShadowReceiver& receiver, std::uint32_t face) {
+  const EdgeMesh& mesh = receiver.faces->mesh();
+  const Triangle& t = mesh.triangles[face];
+  const auto at = [&](std::size_t k) { return Vec3d(mesh.vertices[t[k]]); };
+  const Vec3d normal = cross(at(1) - at(0), at(2) - at(0));
+  return transpose(inverse(receiver.world_from_object).linear) * normal;
+}
+
+// From `place`, where the event meets a face at s, to where the face's plane meets the ray through the same point of
+// the blocker from the light's far side; without end where that ray runs along the plane or away from it.
+Vec3d penumbra_at(const ShadowEvent& event, double s, Vec3d place, const ShadowReceiver& receiver,
+                  std::uint32_t face) {
+  const Vec3d from = event.origin[0] + (event.origin[1] - event.origin[0]) * s;
+  const auto light_at = [&](std::size_t k) { return event.light[k].xyz / event.light[k].w; };
+  const Vec3d light = light_at(0) + (light_at(1) - light_at(0)) * s + event.across;
+  const Vec3d ray = from - light, normal = face_normal(receiver, face);
+  const double fall = dot(normal, ray), height = dot(normal, place - from);
+  if (height == 0) return {};
+  const double t = height / fall;
+  if (!(t > 0 && t < kFarOut)) return normalize(ray) * kFarOut;
+  return from + ray * t - place;
 }
 
 // One event after another, with the memory of the one before.
@@ -99,7 +126,13 @@ class EventTracer {
     const auto at = [&](double s) {
       return Vec3f(wedge.point(s, std::min(p.nearness(s), wedge.begin)));
     };
-    out_.push_back({at(shown.s0), at(shown.s1), event.kind, p.receiver});
+    ShadowEdge edge{at(shown.s0), at(shown.s1), event.kind, p.receiver, {}};
+    if (event.kind != ShadowKind::hard) {
+      const double s = (shown.s0 + shown.s1) / 2;
+      edge.penumbra = Vec3f(penumbra_at(event, s, (Vec3d(edge.a) + Vec3d(edge.b)) / 2,
+                                        receivers_[p.receiver], p.face));
+    }
+    out_.push_back(edge);
   }
 
   std::span<const ShadowReceiver> receivers_;

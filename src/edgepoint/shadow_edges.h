@@ -32,6 +32,8 @@ struct ShadowEdge {
   Vec3f a, b;
   ShadowKind kind = ShadowKind::hard;
   std::uint32_t receiver = 0;
+  // From the middle of the edge across the penumbra to its other side, in the receiver's plane; 0 if hard.
+  Vec3f penumbra;
 };
 
 std::vector<ShadowEdge> find_shadow_edges(std::span<const ShadowEvent> events,

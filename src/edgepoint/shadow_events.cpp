@@ -1,6 +1,7 @@
 #include "edgepoint/shadow_events.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace arris {
 namespace {
@@ -44,7 +45,8 @@ ShadowEvent ve_wedge(const EdgeMesh& mesh, std::uint32_t edge, const Homogeneous
           {position(mesh, e.v0), position(mesh, e.v1)},
           {light, light},
           {e.v0, e.v1},
-          {e.face0, e.face1}};
+          {e.face0, e.face1},
+          {}};
 }
 
 // Positive where the light's corner j lies to the left of the plane through e and corner i; the other way round the
@@ -75,8 +77,23 @@ std::optional<Vec3d> ev_plane(Vec3d q, const Corners& l, std::size_t i) {
 ShadowEvent ev_wedge(const EdgeMesh& mesh, std::uint32_t q, const Corners& l, std::size_t i,
                      ShadowKind kind) {
   const Vec3d p = position(mesh, q);
-  return {
-      kind, {p, p}, {HomogeneousPoint{l[i]}, HomogeneousPoint{l[next(i)]}}, {q, q}, {kNone, kNone}};
+  return {kind,
+          {p, p},
+          {HomogeneousPoint{l[i]}, HomogeneousPoint{l[next(i)]}},
+          {q, q},
+          {kNone, kNone},
+          l[previous(i)] - l[i]};
+}
+
+Vec3d across_of_ve(const EdgeMesh& mesh, const MeshEdge& e, const Corners& l, std::size_t i) {
+  Vec3d farthest;
+  double most = 0;
+  for (const Vec3d& corner : l) {
+    const double side = std::abs(turn(mesh, e, l[i], corner));
+    if (side > most) farthest = corner - l[i];
+    most = std::max(most, side);
+  }
+  return farthest;
 }
 
 // The side of its plane that a light emits to.
@@ -157,6 +174,7 @@ ShadowEvent transform(const Affine3d& m, const ShadowEvent& event) {
     out.origin[k] = transform_point(m, event.origin[k]);
     out.light[k] = transform(m, event.light[k]);
   }
+  out.across = transform_vector(m, event.across);
   return out;
 }
 
@@ -221,6 +239,7 @@ std::vector<ShadowEvent> find_shadow_events(const EdgeTree& blocker,
       const std::optional<ShadowKind> kind = ve_event(mesh, e, l, i);
       if (!kind) continue;
       ShadowEvent event = ve_wedge(mesh, e, from[i], *kind);
+      event.across = across_of_ve(mesh, mesh.edges[e], l, i);
       if (!clip_to_front(event, emission)) continue;
       for (const std::uint32_t v : event.vertex) {
         if (*kind == ShadowKind::umbral && v != kNone) umbral.push_back({v, e, i});

@@ -41,6 +41,8 @@ struct ShadowEvent {
   // Vertices at the two ends of origin; kNone where the edge was cut at the light's plane.
   std::array<std::uint32_t, 2> vertex{kNone, kNone};
   std::array<std::uint32_t, 2> faces{kNone, kNone};  // of the edge; VE only
+  // From light(s) to the corner of the light that is farthest from the event's plane: 0 if the light is a point.
+  Vec3d across;
   // Of a rounded blocker: so far from the beginning, along a ray and on both sides, surfaces show no edge where
   // roundings have taken them away (ShadowReceiver::voids), as the event begins in that void. In the world.
   double void_depth = 0;

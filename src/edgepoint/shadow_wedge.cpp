@@ -286,13 +286,13 @@ class Meeting {
                                                         const WedgePoint& q) const {
     EventPiece piece;
     if (wedge_.parallel) {
-      piece = {p.b, q.b, -p.u, -q.u, 0, 0};
+      piece = {p.b, q.b, -p.u, -q.u};
       if (p.a == 0) piece.s0 = 1;
       if (q.a == 0) piece.s1 = 1;
     } else {
       const double up = p.a + p.b, uq = q.a + q.b;
       if (!(up > 0) || !(uq > 0)) return std::nullopt;
-      piece = {p.b / up, q.b / uq, 1 / up, 1 / uq, 0, 0};
+      piece = {p.b / up, q.b / uq, 1 / up, 1 / uq};
     }
     if (piece.s0 > piece.s1) {
       std::swap(piece.s0, piece.s1);
@@ -379,11 +379,16 @@ void WedgeWalk::insert(const EventWedge& wedge, const ShadowEvent& event,
       if (meeting.misses(receiver.faces->corners()[next.first + i])) continue;
       met_.clear();
       const std::size_t taken = taken_.size();
-      meeting.collect_pieces(receiver.faces->faces()[next.first + i], met_, taken_);
-      for (std::size_t k = taken; k < taken_.size(); ++k) taken_[k].receiver = index;
+      const std::uint32_t face = receiver.faces->faces()[next.first + i];
+      meeting.collect_pieces(face, met_, taken_);
+      for (std::size_t k = taken; k < taken_.size(); ++k) {
+        taken_[k].receiver = index;
+        taken_[k].face = face;
+      }
       for (EventPiece& piece : met_) {
         piece.item = next_item_++;
         piece.receiver = index;
+        piece.face = face;
         pieces.insert(piece);
       }
       if (!met_.empty()) farthest = farthest_u(wedge, pieces, scale);

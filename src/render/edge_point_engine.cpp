@@ -125,12 +125,12 @@ class EdgePointEngine::Impl {
     if (settings_.use_edges) edges = objects_.find_edges(*scene_, view, settings_.threads, totals);
     if (settings_.use_edges && settings_.shadow_edges) {
       shadows_.update(*scene_, objects_, kShadowEvents);
-      edges.insert(edges.end(), shadows_.edges().begin(), shadows_.edges().end());
       totals.shadow = shadows_.edges().size();
     }
     stats_.stages.edges = milliseconds_since(start);
+    const std::span<const SoftEdge> shadows = shadows_.edges();
     const FrameReport report = maker_.make(
-        view, edges, cache_, {frame_, settings_.complex_filter, settings_.threads}, picture_);
+        view, {edges, shadows}, cache_, {frame_, settings_.complex_filter, settings_.threads}, picture_);
     film_.blend_into(picture_, kNeighbors * float(shader_.paths), settings_.threads);
     stats_.stages.total = milliseconds_since(start);
     keep_report(report, totals);

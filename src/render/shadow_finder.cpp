@@ -192,11 +192,12 @@ bool ShadowFinder::update(const PreparedScene& scene, const EdgeObjects& objects
       if (const CsgEdges* const on = objects.solid(receiver)) {
         const std::vector<WorldEdge> found = find_edges_on_solid(
             pair.events, *on, scene.scene().objects[receiver].world_from_object);
-        pair.edges.insert(pair.edges.end(), found.begin(), found.end());
+        for (const WorldEdge& edge : found) pair.edges.push_back({edge, {}, false});
       }
     }
     for (const ShadowEdge& edge : find_shadow_edges(pair.events, receivers)) {
-      pair.edges.push_back({edge.a, edge.b});
+      pair.edges.push_back(
+          {{edge.a, edge.b}, edge.penumbra, edge.kind == ShadowKind::umbral});
     }
     done += pair.events.size() * pair.receivers.size();
     pair.events_known = pair.edges_known = true;

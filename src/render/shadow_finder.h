@@ -48,19 +48,19 @@ class ShadowFinder {
 
   // Finds what is missing, up to about so many events; false if some of it waits.
   bool update(const PreparedScene& scene, const EdgeObjects& objects, std::size_t most_events);
-  [[nodiscard]] const std::vector<WorldEdge>& edges() const { return edges_; }
+  [[nodiscard]] const std::vector<SoftEdge>& edges() const { return edges_; }
 
  private:
   struct Pair {
     std::set<std::uint32_t> receivers;
     std::vector<ShadowEvent> events;  // in the world
-    std::vector<WorldEdge> edges;
+    std::vector<SoftEdge> edges;
     bool events_known = false, edges_known = false;
   };
   using Key = std::pair<std::uint32_t, std::uint32_t>;  // light, blocker
 
   std::map<Key, Pair> pairs_;
-  std::vector<WorldEdge> edges_;
+  std::vector<SoftEdge> edges_;
 };
 
 // Tells the finder which lights are others; true if any is, also of such as cast no shadow edges.
