@@ -2,18 +2,54 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cstddef>
-#include <cstring>
 
+#include "edgepoint/point_rows.h"
+
+#undef HWY_TARGET_INCLUDE
+// NOLINTNEXTLINE(readability-identifier-naming)
+#define HWY_TARGET_INCLUDE "edgepoint/classify.cpp"
+#include <hwy/foreach_target.h>  // compiles this file once for each kind of processor
+
+#include <hwy/highway.h>
+
+#include "edgepoint/bit_lanes-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace arris::HWY_NAMESPACE {
+namespace {
+
+namespace hn = hwy::HWY_NAMESPACE;
+
+// Of 64 pixels those with a crossing on any side. The right side of each is the left one of the next.
+std::uint64_t crossed(const std::uint8_t* upper, const std::uint8_t* lower,
+                      const std::uint8_t* left) {
+  const hn::CappedTag<std::uint8_t, 64> d;
+  std::uint64_t bits = 0;
+  for (std::size_t i = 0; i < 64; i += hn::Lanes(d)) {
+    const auto rows = hn::Or(hn::LoadU(d, upper + i), hn::LoadU(d, lower + i));
+    const auto columns = hn::Or(hn::LoadU(d, left + i), hn::LoadU(d, left + i + 1));
+    bits |= bits_of(d, hn::Ne(hn::Or(rows, columns), hn::Zero(d))) << i;
+  }
+  return bits;
+}
+
+}  // namespace
+}  // namespace arris::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
 namespace arris {
 namespace {
 
-constexpr int kWord = 64;  // pixels
+HWY_EXPORT(crossed);
 
-std::uint64_t any_of(const std::uint8_t* bytes) {
-  std::array<std::uint64_t, kWord / 8> words;
-  std::memcpy(words.data(), bytes, kWord);
-  return words[0] | words[1] | words[2] | words[3] | words[4] | words[5] | words[6] | words[7];
+constexpr int kWord = 64;  // pixels
+using Word = std::uint64_t;
+
+Word find_crossed(const std::uint8_t* upper, const std::uint8_t* lower, const std::uint8_t* left) {
+  return HWY_DYNAMIC_DISPATCH(crossed)(upper, lower, left);
 }
 
 struct Corners {
@@ -54,31 +90,22 @@ PixelClasses classify_pixels(RowBand band, EdgePointImage& image) {
     const std::uint8_t *upper = c.upper.row(y), *lower = c.upper.row(y + 1), *left = c.left.row(y);
     PixelCode* const codes = image.codes.data() + image.offset(0, y);
     const PointKey* const points = image.points.data() + image.offset(0, y);
+    std::fill_n(codes, unsigned(width), PixelCode(kEmptyEdge));
     for (int x0 = 0; x0 < width; x0 += kWord) {
       const int count = std::min(kWord, width - x0);
+      const Word inside = ~Word{0} >> unsigned(kWord - count);
+      const Word crossed = find_crossed(upper + x0, lower + x0, left + x0) & inside;
       Corners corners;
-      std::uint64_t samples = 0;
-      // The right side of the last pixel of the word is the left one of the next.
-      const bool any = (any_of(upper + x0) | any_of(lower + x0) | any_of(left + x0)) != 0 ||
-                       left[x0 + count] != 0;
-      if (!any) {
-        corners.primary.fill(count == kWord ? ~std::uint64_t{0}
-                                            : (std::uint64_t{1} << unsigned(count)) - 1);
-        std::fill(codes + x0, codes + x0 + count, PixelCode(kEmptyEdge));
-        for (int i = 0; i < count; ++i) {
-          samples |= std::uint64_t(points[x0 + i].is_none() ? 0 : 1) << unsigned(i);
-        }
-        classes.empty += std::uint64_t(count);
-      } else {
-        for (int x = x0; x < x0 + count; ++x) {
-          const ClassifiedPixel pixel = classify_pixel(boundary_mask(c.of_pixel(x, y)), points[x]);
-          codes[x] = pixel.code;
-          corners.add(pixel.code, x - x0);
-          samples |= std::uint64_t(pixel.has_sample ? 1 : 0) << unsigned(x - x0);
-          classes.empty += codes[x].is_empty() ? 1 : 0;
-          classes.simple += codes[x].is_simple() ? 1 : 0;
-          classes.complex += codes[x].is_complex() ? 1 : 0;
-        }
+      corners.primary.fill(inside & ~crossed);
+      Word samples = find_occupied({points + x0, std::size_t(count)});
+      classes.empty += std::uint64_t(count - std::popcount(crossed));
+      for (Word rest = crossed; rest != 0; rest &= rest - 1) {
+        const int bit = std::countr_zero(rest), x = x0 + bit;
+        const ClassifiedPixel pixel = classify_pixel(boundary_mask(c.of_pixel(x, y)), points[x]);
+        codes[x] = pixel.code;
+        corners.add(pixel.code, bit);
+        if (!pixel.has_sample) samples &= ~(Word{1} << unsigned(bit));
+        (pixel.code.is_simple() ? classes.simple : classes.complex) += 1;
       }
       image.samples.row(y)[x0 / kWord] = samples;
       for (std::size_t k = 0; k < 4; ++k) {
@@ -91,3 +118,4 @@ PixelClasses classify_pixels(RowBand band, EdgePointImage& image) {
 }
 
 }  // namespace arris
+#endif

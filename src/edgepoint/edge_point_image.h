@@ -59,14 +59,14 @@ class CrossingRows {
 
 struct Crossings {
   CrossingRows upper;       // (x, y): of the upper side of pixel (x, y); y up to height
-  CrossingRows left;        // of its left side; x up to width
+  CrossingRows left;        // of its left side; x up to width, and to 64 beyond what can be read
   CrossingRows mid_row;     // of the line through its middle from left to right
   CrossingRows mid_column;  // of that from top to bottom
 
   Crossings() = default;
   Crossings(int width, int height)
       : upper(width, height + 1),
-        left(width + 1, height),
+        left(width + 64, height),
         mid_row(width, height),
         mid_column(width, height) {}
 

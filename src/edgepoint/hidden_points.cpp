@@ -9,6 +9,7 @@
 #include <cstring>
 #include <optional>
 
+#include "edgepoint/point_rows.h"
 #include "edgepoint/shifted_word.h"
 
 #undef HWY_TARGET_INCLUDE
@@ -199,10 +200,8 @@ class HiddenFinder {
 
   void fetch(int y) {
     if (y < 0 || y >= image_.height_px) return;
-    const PointKey* const points = image_.points.data() + image_.offset(0, y);
-    float* const inverse = row(y);
-    // Of no point it is not a number, which is smaller than nothing.
-    for (int x = 0; x < image_.width_px; ++x) inverse[x] = 1 / points[x].depth();
+    find_inverse_depths({image_.points.data() + image_.offset(0, y), std::size_t(image_.width_px)},
+                        row(y));
   }
 
   void find_in(int y, int word) {

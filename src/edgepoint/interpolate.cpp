@@ -4,10 +4,11 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <cstring>
+#include <type_traits>
+#include <utility>
 
 #include "edgepoint/kernel.h"
-#include "edgepoint/shifted_word.h"
+#include "edgepoint/reach_offsets.h"
 
 #undef HWY_TARGET_INCLUDE
 // NOLINTNEXTLINE(readability-identifier-naming)
@@ -16,17 +17,22 @@
 
 #include <hwy/highway.h>
 
+#include "edgepoint/bit_lanes-inl.h"
+
 #ifndef ARRIS_EDGEPOINT_INTERPOLATE_ONCE
 #define ARRIS_EDGEPOINT_INTERPOLATE_ONCE
 namespace arris {
 
-// A neighbour within reach: which of 64 pixels it has a sample for, where that is, and what it counts.
-struct Tap {
-  std::uint64_t pixels = 0;
-  const float *r = nullptr, *g = nullptr, *b = nullptr;
-  float weight = 0;
-};
-inline constexpr std::size_t kTaps = 25;
+// Five rows of samples around a row of pixels, where that is 2.
+using SampleRows = std::array<ColorRow, 5>;
+
+// The pixel itself, then each offset of kReachOffset and its opposite: sums are always made in this order.
+inline constexpr std::size_t kTaps = 1 + 2 * kReachOffsets;
+constexpr ReachOffset tap_offset(std::size_t tap) {
+  if (tap == 0) return {0, 0};
+  const auto [dx, dy] = kReachOffset[(tap - 1) / 2];
+  return tap % 2 == 1 ? ReachOffset{dx, dy} : ReachOffset{-dx, -dy};
+}
 
 }  // namespace arris
 #endif
@@ -37,33 +43,84 @@ namespace {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
-// Pixels x0 to x0 + count of the row; count ≤ 64, what lies beyond is anything.
-void sum_taps(const std::array<Tap, kTaps>& taps, std::size_t tap_count, int x0, int count,
-              ColorRow out, float* weight) {
-  const hn::CappedTag<float, 16> f;
-  const auto zero = hn::Zero(f), one = hn::Set(f, 1.0F);
-  const int lanes = int(hn::Lanes(f));
-  for (int i = 0; i < count; i += lanes) {
-    auto r = zero, g = zero, b = zero, sum = zero;
-    for (std::size_t k = 0; k < tap_count; ++k) {
-      const Tap& tap = taps[k];
-      const std::uint64_t bits = tap.pixels >> unsigned(i);
-      std::array<std::uint8_t, 8> bytes;
-      std::memcpy(bytes.data(), &bits, sizeof bits);
-      const auto mask = hn::LoadMaskBits(f, bytes.data());
-      const auto w = hn::IfThenElseZero(mask, hn::Set(f, tap.weight));
-      const int x = x0 + i;
-      r = hn::MulAdd(w, hn::LoadU(f, tap.r + x), r);
-      g = hn::MulAdd(w, hn::LoadU(f, tap.g + x), g);
-      b = hn::MulAdd(w, hn::LoadU(f, tap.b + x), b);
-      sum = hn::Add(w, sum);
+// Of a vector of words of a row: for each tap the pixels that it has a sample for within reach, and those that any has.
+struct TapMasks {
+  std::array<std::array<std::uint64_t, kVectorWords>, kTaps> taps;
+  std::array<std::uint64_t, kVectorWords> any;
+};
+
+template <std::size_t... kTap>
+HWY_INLINE void find_masks(const EdgePointImage& image, int y, int word, TapMasks& out,
+                           std::index_sequence<kTap...> /*taps*/) {
+  const WordLanes d;
+  // Complex pixels are those whose corners belong to no region.
+  const WordVector complex =
+      hn::Not(hn::Or(hn::LoadU(d, image.corners.primary[0].row(y) + word),
+                     hn::LoadU(d, image.corners.secondary[0].row(y) + word)));
+  WordVector any = hn::Zero(d);
+  const auto add = [&](auto tap) HWY_ATTR {
+    constexpr std::size_t kIndex = decltype(tap)::value;
+    constexpr ReachOffset kOffset = tap_offset(kIndex);
+    WordVector mask = shifted_words<kOffset.dx>(image.samples.row(y + kOffset.dy), word);
+    if constexpr (kIndex > 0) {
+      const BitPlane& reach = image.reach.planes[(kIndex - 1) / 2];
+      // The opposite of an offset is known where it starts.
+      const WordVector reached = kIndex % 2 == 1
+                                     ? hn::LoadU(d, reach.row(y) + word)
+                                     : shifted_words<kOffset.dx>(reach.row(y + kOffset.dy), word);
+      mask = hn::And(mask, hn::Or(reached, complex));
     }
-    const auto inverse = hn::Div(one, hn::IfThenElse(hn::Gt(sum, zero), sum, one));
-    const int x = x0 + i;
-    hn::StoreU(hn::Mul(r, inverse), f, out.r + x);
-    hn::StoreU(hn::Mul(g, inverse), f, out.g + x);
-    hn::StoreU(hn::Mul(b, inverse), f, out.b + x);
-    hn::StoreU(sum, f, weight + x);
+    hn::StoreU(mask, d, out.taps[kIndex].data());
+    any = hn::Or(any, mask);
+  };
+  (add(std::integral_constant<std::size_t, kTap>()), ...);
+  hn::StoreU(any, d, out.any.data());
+}
+
+// A vector of pixels from x on, which are those of a word from bit `first` on.
+template <std::size_t... kTap>
+HWY_INLINE void sum_taps(const TapMasks& masks, std::size_t word, unsigned first,
+                         const SampleRows& rows, std::ptrdiff_t x, ColorRow out, float* weight,
+                         std::index_sequence<kTap...> /*taps*/) {
+  const PixelLanes f;
+  const auto zero = hn::Zero(f), one = hn::Set(f, 1.0F);
+  auto r = zero, g = zero, b = zero, sum = zero;
+  const auto add = [&](auto tap) HWY_ATTR {
+    constexpr ReachOffset kOffset = tap_offset(decltype(tap)::value);
+    const ColorRow& row = rows[std::size_t(2 + kOffset.dy)];
+    const auto mask = mask_from(f, masks.taps[decltype(tap)::value][word], first);
+    const auto w = hn::IfThenElseZero(mask, hn::Set(f, kernel_weight(kOffset.dx, kOffset.dy)));
+    const std::ptrdiff_t from = x + kOffset.dx;
+    r = hn::MulAdd(w, hn::LoadU(f, row.r + from), r);
+    g = hn::MulAdd(w, hn::LoadU(f, row.g + from), g);
+    b = hn::MulAdd(w, hn::LoadU(f, row.b + from), b);
+    sum = hn::Add(w, sum);
+  };
+  (add(std::integral_constant<std::size_t, kTap>()), ...);
+  const auto inverse = hn::Div(one, hn::IfThenElse(hn::Gt(sum, zero), sum, one));
+  hn::StoreU(hn::Mul(r, inverse), f, out.r + x);
+  hn::StoreU(hn::Mul(g, inverse), f, out.g + x);
+  hn::StoreU(hn::Mul(b, inverse), f, out.b + x);
+  hn::StoreU(sum, f, weight + x);
+}
+
+void interpolate(const EdgePointImage& image, int y, const SampleRows& rows, ColorRow out,
+                 float* weight) {
+  constexpr auto kAll = std::make_index_sequence<kTaps>();
+  const PixelLanes f;
+  const auto zero = hn::Zero(f);
+  const int step = int(hn::Lanes(WordLanes())), lanes = int(hn::Lanes(f));
+  TapMasks masks;
+  for (int word = 0; word < image.samples.words(); word += step) {
+    find_masks(image, y, word, masks, kAll);
+    for (int x = 64 * word; x < std::min(64 * (word + step), image.width_px); x += lanes) {
+      const auto in_masks = std::size_t(x / 64 - word);
+      if (masks.any[in_masks] != 0) {
+        sum_taps(masks, in_masks, unsigned(x % 64), rows, x, out, weight, kAll);
+        continue;
+      }
+      for (float* const row : {out.r, out.g, out.b, weight}) hn::StoreU(zero, f, row + x);
+    }
   }
 }
 
@@ -88,46 +145,9 @@ HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
 namespace arris {
-namespace {
 
-HWY_EXPORT(sum_taps);
+HWY_EXPORT(interpolate);
 HWY_EXPORT(interleave);
-
-class TapList {
- public:
-  TapList(const EdgePointImage& image, ColorRows& samples, int y, int word)
-      : image_(image), samples_(samples), y_(y), word_(word) {}
-
-  void add(int dx, int dy, std::uint64_t pixels) {
-    if (pixels == 0) return;
-    const ColorRow row = samples_.row(y_ + dy);
-    taps_[count_++] = {pixels, row.r + dx, row.g + dx, row.b + dx, kernel_weight(dx, dy)};
-  }
-  // Of a neighbour the pixels for which it has a sample.
-  [[nodiscard]] std::uint64_t sampled(int dx, int dy) const {
-    return shifted_word(image_.samples.row(y_ + dy), word_, dx);
-  }
-  // Of the pixels those that reach the neighbour at an offset of kReachOffset, and at its opposite.
-  [[nodiscard]] std::uint64_t reached(std::size_t k) const {
-    return image_.reach.planes[k].row(y_)[word_];
-  }
-  [[nodiscard]] std::uint64_t reached_back(std::size_t k) const {
-    const auto [dx, dy] = kReachOffset[k];
-    return shifted_word(image_.reach.planes[k].row(y_ - dy), word_, -dx);
-  }
-  void sum(int x0, int count, ColorRow out, float* weight) const {
-    HWY_DYNAMIC_DISPATCH(sum_taps)(taps_, count_, x0, count, out, weight);
-  }
-
- private:
-  const EdgePointImage& image_;
-  ColorRows& samples_;
-  int y_, word_;
-  std::array<Tap, kTaps> taps_;
-  std::size_t count_ = 0;
-};
-
-}  // namespace
 
 void interleave_row(ColorRow row, int width, float* out) {
   HWY_DYNAMIC_DISPATCH(interleave)(row, width, out);
@@ -135,20 +155,9 @@ void interleave_row(ColorRow row, int width, float* out) {
 
 void interpolate_row(const EdgePointImage& image, int y, ColorRows& samples, ColorRow out,
                      float* weight) {
-  for (int word = 0; word < image.samples.words(); ++word) {
-    TapList taps(image, samples, y, word);
-    // Complex pixels are those whose corners belong to no region.
-    const std::uint64_t complex =
-        ~(image.corners.primary[0].row(y)[word] | image.corners.secondary[0].row(y)[word]);
-    taps.add(0, 0, taps.sampled(0, 0));
-    for (std::size_t k = 0; k < kReachOffsets; ++k) {
-      const auto [dx, dy] = kReachOffset[k];
-      taps.add(dx, dy, (taps.reached(k) | complex) & taps.sampled(dx, dy));
-      taps.add(-dx, -dy, (taps.reached_back(k) | complex) & taps.sampled(-dx, -dy));
-    }
-    const int x0 = word * 64;
-    taps.sum(x0, std::min(64, image.width_px - x0), out, weight);
-  }
+  SampleRows rows;
+  for (int dy = -2; dy <= 2; ++dy) rows[std::size_t(2 + dy)] = samples.row(y + dy);
+  HWY_DYNAMIC_DISPATCH(interpolate)(image, y, rows, out, weight);
 }
 
 }  // namespace arris

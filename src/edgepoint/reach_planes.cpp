@@ -9,6 +9,7 @@
 
 #include <hwy/highway.h>
 
+#include "edgepoint/bit_lanes-inl.h"
 #include "edgepoint/reach_chain-inl.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -16,46 +17,28 @@ namespace arris::HWY_NAMESPACE {
 namespace {
 
 namespace hn = hwy::HWY_NAMESPACE;
-using Words = hn::ScalableTag<std::uint64_t>;
-using Vector = hn::Vec<Words>;
-
-// The words of a row from i on, as they are for the pixels kShift to the right (to the left if negative).
-template <int kShift>
-HWY_INLINE Vector shifted(const std::uint64_t* row, int i) {
-  const Words d;
-  const Vector here = hn::LoadU(d, row + i);
-  if constexpr (kShift == 0) {
-    return here;
-  } else if constexpr (kShift > 0) {
-    return hn::Or(hn::ShiftRight<kShift>(here),
-                  hn::ShiftLeft<64 - kShift>(hn::LoadU(d, row + i + 1)));
-  } else {
-    return hn::Or(hn::ShiftLeft<-kShift>(here),
-                  hn::ShiftRight<64 + kShift>(hn::LoadU(d, row + i - 1)));
-  }
-}
 
 // The corners of the pixels at an offset of kShift.
 template <int kShift>
-HWY_INLINE CornerRegions<Vector> corner(const CornerPlanes& planes, std::size_t which, int y,
-                                        int i) {
-  return {shifted<kShift>(planes.primary[which].row(y), i),
-          shifted<kShift>(planes.secondary[which].row(y), i)};
+HWY_INLINE CornerRegions<WordVector> corner(const CornerPlanes& planes, std::size_t which, int y,
+                                            int i) {
+  return {shifted_words<kShift>(planes.primary[which].row(y), i),
+          shifted_words<kShift>(planes.secondary[which].row(y), i)};
 }
 
 template <int kShift>
-HWY_INLINE ReachMatrix<Vector> right_of(const CornerPlanes& planes, int y, int i) {
+HWY_INLINE ReachMatrix<WordVector> right_of(const CornerPlanes& planes, int y, int i) {
   return reach_across(corner<kShift>(planes, 1, y, i), corner<kShift>(planes, 2, y, i),
                       corner<kShift + 1>(planes, 0, y, i), corner<kShift + 1>(planes, 3, y, i));
 }
 template <int kShift>
-HWY_INLINE ReachMatrix<Vector> below(const CornerPlanes& planes, int y, int i) {
+HWY_INLINE ReachMatrix<WordVector> below(const CornerPlanes& planes, int y, int i) {
   return reach_across(corner<kShift>(planes, 3, y, i), corner<kShift>(planes, 2, y, i),
                       corner<kShift>(planes, 0, y + 1, i), corner<kShift>(planes, 1, y + 1, i));
 }
 
 void find_reach_rows(const CornerPlanes& corners, RowBand band, ReachPlanes& reach) {
-  const Words d;
+  const WordLanes d;
   const int words = corners.primary[0].words(), step = int(hn::Lanes(d));
   for (int y = band.first; y < band.last; ++y) {
     for (int i = 0; i < words; i += step) {
@@ -86,7 +69,7 @@ void find_reach_rows(const CornerPlanes& corners, RowBand band, ReachPlanes& rea
             return below<2>(corners, y + dy, i);
         }
       };
-      const Reach<Vector> found = chain_reach<Vector>(right, down);
+      const Reach<WordVector> found = chain_reach<WordVector>(right, down);
       for (std::size_t k = 0; k < kReachOffsets; ++k) {
         hn::StoreU(found[k].pp, d, reach.planes[k].row(y) + i);
       }

@@ -9,6 +9,7 @@
 #include "edgepoint/color_rows.h"
 #include "edgepoint/complex_pixel.h"
 #include "edgepoint/interpolate.h"
+#include "edgepoint/point_rows.h"
 
 namespace arris {
 namespace {
@@ -17,14 +18,6 @@ using Clock = std::chrono::steady_clock;
 
 constexpr int kSampleRows = 8;   // of five that are needed; a power of two
 constexpr int kPrimaryRows = 4;  // of three
-
-// Weights of interpolation are at most the kernel's sum, and 1 with a sample of the pixel's own.
-constexpr float kOwnWeight = 1;
-
-// What a pixel wants whose point shows what is no longer so.
-constexpr std::uint8_t kStaleWanted = 160;
-// Frames after which a point gets no older.
-constexpr std::uint16_t kOld = 254;
 
 class Band {
  public:
@@ -40,7 +33,7 @@ class Band {
         samples_(kSampleRows, width_),
         primary_(kPrimaryRows, width_),
         weights_(std::size_t(kPrimaryRows) * weight_stride()),
-        wishes_(std::size_t(kSampleRows) * std::size_t(width_)) {
+        wishes_(std::size_t(kSampleRows) * weight_stride()) {
     report_.seen.assign(cache.blocks().size(), 0);
   }
 
@@ -65,33 +58,18 @@ class Band {
     return weights_.data() + std::size_t((y + kPrimaryRows) % kPrimaryRows) * weight_stride();
   }
   [[nodiscard]] std::uint8_t* wish_row(int y) {
-    return wishes_.data() + std::size_t((y + kSampleRows) % kSampleRows) * std::size_t(width_);
+    return wishes_.data() + std::size_t((y + kSampleRows) % kSampleRows) * weight_stride();
   }
   [[nodiscard]] PrimaryRows primary_rows(int y) { return {primary_.row(y), weight_row(y)}; }
 
-  // The colours of a row's points; black where there are none, and beyond the picture.
   void fetch(int y) {
-    const ColorRow row = samples_.row(y);
-    const bool inside = y >= 0 && y < image_.height_px;
-    const PointKey* const keys = inside ? image_.points.data() + image_.offset(0, y) : nullptr;
-    const bool own = y >= band_.first && y < band_.last;
-    std::uint8_t* const own_wish = wish_row(y);
-    const std::uint32_t* const radiance = cache_.packed_radiance();
-    const std::uint16_t* const born = cache_.born();
-    for (int x = 0; x < width_; ++x) {
-      Rgb color;
-      std::uint8_t wish = 0;
-      if (inside && !keys[x].is_none()) {
-        const PointNumber point = keys[x].point();
-        color = unpack_radiance(radiance[point]);
-        const auto age = std::uint16_t(settings_.frame - born[point]);
-        wish = age >= kStaleAge ? kStaleWanted : std::uint8_t(1 + std::min(age, kOld) / 16);
-        if (own) ++report_.seen[point / kPointBlock];
-      }
-      row.r[x] = color.x;
-      row.g[x] = color.y;
-      row.b[x] = color.z;
-      own_wish[x] = wish;
+    // Beyond the picture nothing has a sample.
+    if (y < 0 || y >= image_.height_px) return;
+    const std::span row(image_.points.data() + image_.offset(0, y), std::size_t(width_));
+    fetch_points(row, cache_, settings_.frame, samples_.row(y), wish_row(y));
+    if (y < band_.first || y >= band_.last) return;
+    for (const PointKey key : row) {
+      if (!key.is_none()) ++report_.seen[key.point() / kPointBlock];
     }
   }
 
@@ -147,16 +125,8 @@ class Band {
 
   void set_wanted(int y, const float* weight) {
     const std::size_t offset = image_.offset(0, y);
-    std::uint8_t* const wanted = wanted_.data() + offset;
-    const std::uint8_t* const own = wish_row(y);
-    for (int x = 0; x < width_; ++x) {
-      // The less is known of it, the more: 200 / (1 + 8 w).
-      const auto open = std::uint8_t(200 / (1 + 8 * std::min(weight[x], kOwnWeight)));
-      wanted[x] = own[x] != 0 ? own[x] : open;
-      if (weight[x] > 0) continue;
-      wanted[x] = 255;
-      report_.unresolved.push_back(std::uint32_t(offset) + std::uint32_t(x));
-    }
+    find_wanted(wanted_.subspan(offset, std::size_t(width_)), weight, wish_row(y), offset,
+                report_.unresolved);
   }
 
   const EdgePointImage& image_;

@@ -1,0 +1,204 @@
+#include "edgepoint/point_rows.h"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+
+#undef HWY_TARGET_INCLUDE
+// NOLINTNEXTLINE(readability-identifier-naming)
+#define HWY_TARGET_INCLUDE "edgepoint/point_rows.cpp"
+#include <hwy/foreach_target.h>  // compiles this file once for each kind of processor
+
+#include <hwy/highway.h>
+
+#include "edgepoint/bit_lanes-inl.h"
+
+#ifndef ARRIS_EDGEPOINT_POINT_ROWS_ONCE
+#define ARRIS_EDGEPOINT_POINT_ROWS_ONCE
+namespace arris {
+
+// Weights of interpolation are at most the kernel's sum, and 1 with a sample of the pixel's own.
+inline constexpr float kOwnWeight = 1;
+// What a pixel wants whose point shows what is no longer so.
+inline constexpr std::uint32_t kStaleWanted = 160;
+// Frames after which a point gets no older.
+inline constexpr std::uint32_t kOld = 254;
+
+// Of a cache's points.
+struct PointData {
+  const std::uint32_t* radiance;
+  const std::uint16_t* born;
+  std::uint32_t frame;
+};
+
+}  // namespace arris
+#endif
+
+HWY_BEFORE_NAMESPACE();
+namespace arris::HWY_NAMESPACE {
+namespace {
+
+namespace hn = hwy::HWY_NAMESPACE;
+
+using Unsigned = hn::RebindToUnsigned<PixelLanes>;
+using Integers = hn::Vec<Unsigned>;
+
+constexpr std::uint32_t kNone = 0xffffffff;  // both halves of a key without a point
+
+// Calls for each vector of pixels: where it begins, and the lower and upper halves of their keys. Beyond the row's end
+// there are no points.
+template <class Call>
+HWY_INLINE void for_keys(std::span<const PointKey> row, const Call& call) {
+  const Unsigned u;
+  const std::size_t lanes = hn::Lanes(u);
+  Integers low, high;
+  std::size_t x = 0;
+  for (; x + lanes <= row.size(); x += lanes) {
+    hn::LoadInterleaved2(u, reinterpret_cast<const std::uint32_t*>(row.data() + x), low, high);
+    call(x, low, high);
+  }
+  if (x == row.size()) return;
+  std::array<PointKey, hn::MaxLanes(Unsigned())> last;
+  std::copy(row.begin() + std::ptrdiff_t(x), row.end(), last.begin());
+  hn::LoadInterleaved2(u, reinterpret_cast<const std::uint32_t*>(last.data()), low, high);
+  call(x, low, high);
+}
+
+std::uint64_t occupied(std::span<const PointKey> keys) {
+  std::uint64_t bits = 0;
+  for_keys(keys, [&](std::size_t x, Integers /*low*/, Integers high) HWY_ATTR {
+    const Unsigned u;
+    bits |= bits_of(u, hn::Ne(high, hn::Set(u, kNone))) << x;
+  });
+  return bits;
+}
+
+void inverse_depths(std::span<const PointKey> row, float* out) {
+  for_keys(row, [&](std::size_t x, Integers /*low*/, Integers high) HWY_ATTR {
+    const PixelLanes f;
+    hn::StoreU(hn::Div(hn::Set(f, 1.0F), hn::BitCast(f, high)), f, out + x);
+  });
+}
+
+void widen(std::span<const PointKey> row, const DepthColumns& columns) {
+  for_keys(row, [&](std::size_t x, Integers /*low*/, Integers high) HWY_ATTR {
+    const Unsigned u;
+    const auto some = hn::Ne(high, hn::Set(u, kNone));
+    hn::StoreU(hn::Min(hn::LoadU(u, columns.nearest + x), high), u, columns.nearest + x);
+    hn::StoreU(hn::Max(hn::LoadU(u, columns.farthest + x), hn::IfThenElseZero(some, high)), u,
+               columns.farthest + x);
+    hn::StoreU(hn::Add(hn::LoadU(u, columns.count + x), hn::IfThenElseZero(some, hn::Set(u, 1))), u,
+               columns.count + x);
+  });
+}
+
+void fetch(std::span<const PointKey> row, const PointData& data, ColorRow colors,
+           std::uint8_t* wishes) {
+  for_keys(row, [&](std::size_t x, Integers low, Integers high) HWY_ATTR {
+    const Unsigned u;
+    const PixelLanes f;
+    const hn::RebindToSigned<PixelLanes> s;
+    const hn::Rebind<std::uint8_t, PixelLanes> bytes;
+    const auto some = hn::Ne(high, hn::Set(u, kNone));
+    // Where there is no point the first stands in.
+    const auto point = hn::IfThenElseZero(some, hn::ShiftRight<4>(low));
+    const auto packed =
+        hn::IfThenElseZero(some, hn::GatherIndex(u, data.radiance, hn::BitCast(s, point)));
+    const auto nine = hn::Set(u, 511);
+    // 2^(exponent − bias − bits), made from its bits, as in unpack_radiance().
+    const auto exponent = hn::Add(hn::ShiftRight<27>(packed),
+                                  hn::Set(u, std::uint32_t(127 - kRadianceBias - kRadianceBits)));
+    const auto scale = hn::BitCast(f, hn::ShiftLeft<23>(exponent));
+    const auto channel = [&](Integers v) HWY_ATTR {
+      return hn::Mul(hn::ConvertTo(f, hn::BitCast(s, hn::And(v, nine))), scale);
+    };
+    hn::StoreU(channel(packed), f, colors.r + x);
+    hn::StoreU(channel(hn::ShiftRight<9>(packed)), f, colors.g + x);
+    hn::StoreU(channel(hn::ShiftRight<18>(packed)), f, colors.b + x);
+    // Frames are kept in sixteen bits, two in a word.
+    const auto pair = hn::GatherIndex(u, reinterpret_cast<const std::uint32_t*>(data.born),
+                                      hn::BitCast(s, hn::ShiftRight<1>(point)));
+    const auto odd = hn::Ne(hn::And(point, hn::Set(u, 1)), hn::Zero(u));
+    const auto born = hn::IfThenElse(odd, hn::ShiftRight<16>(pair), pair);
+    const auto age = hn::And(hn::Sub(hn::Set(u, data.frame), born), hn::Set(u, 0xffff));
+    const auto by_age = hn::Add(hn::ShiftRight<4>(hn::Min(age, hn::Set(u, kOld))), hn::Set(u, 1));
+    const auto is_stale = hn::Gt(age, hn::Set(u, kStaleAge - 1U));
+    const auto wish =
+        hn::IfThenElseZero(some, hn::IfThenElse(is_stale, hn::Set(u, kStaleWanted), by_age));
+    hn::StoreU(hn::DemoteTo(bytes, hn::BitCast(s, wish)), bytes, wishes + x);
+  });
+}
+
+// Fills `out` with what is wanted of up to 64 pixels; returns those of which nothing is known.
+std::uint64_t wanted_of(const float* weight, const std::uint8_t* wishes, std::size_t count,
+                        std::uint8_t* out) {
+  const PixelLanes f;
+  const hn::RebindToSigned<PixelLanes> s;
+  const hn::Rebind<std::uint8_t, PixelLanes> bytes;
+  std::uint64_t unknown = 0;
+  for (std::size_t i = 0; i < count; i += hn::Lanes(f)) {
+    const auto w = hn::LoadU(f, weight + i);
+    // The less is known of it, the more: 200 / (1 + 8 w).
+    const auto known =
+        hn::Add(hn::Set(f, 1.0F), hn::Mul(hn::Set(f, 8.0F), hn::Min(w, hn::Set(f, kOwnWeight))));
+    const auto open = hn::ConvertTo(s, hn::Div(hn::Set(f, 200.0F), known));
+    const auto wish = hn::PromoteTo(s, hn::LoadU(bytes, wishes + i));
+    const auto none = hn::Not(hn::Gt(w, hn::Zero(f)));
+    const auto wanted = hn::IfThenElse(hn::RebindMask(s, none), hn::Set(s, 255),
+                                       hn::IfThenElse(hn::Eq(wish, hn::Zero(s)), open, wish));
+    if (i + hn::Lanes(f) <= count) {
+      hn::StoreU(hn::DemoteTo(bytes, wanted), bytes, out + i);
+    } else {
+      std::array<std::uint8_t, 64> last;
+      hn::StoreU(hn::DemoteTo(bytes, wanted), bytes, last.data());
+      std::copy_n(last.data(), count - i, out + i);
+    }
+    unknown |= bits_of(f, none) << i;
+  }
+  return count == 64 ? unknown : unknown & ((std::uint64_t{1} << count) - 1);
+}
+
+}  // namespace
+}  // namespace arris::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace arris {
+
+HWY_EXPORT(occupied);
+HWY_EXPORT(inverse_depths);
+HWY_EXPORT(widen);
+HWY_EXPORT(fetch);
+HWY_EXPORT(wanted_of);
+
+std::uint64_t find_occupied(std::span<const PointKey> keys) {
+  return HWY_DYNAMIC_DISPATCH(occupied)(keys);
+}
+
+void find_inverse_depths(std::span<const PointKey> row, float* out) {
+  HWY_DYNAMIC_DISPATCH(inverse_depths)(row, out);
+}
+
+void add_depths(std::span<const PointKey> row, const DepthColumns& columns) {
+  HWY_DYNAMIC_DISPATCH(widen)(row, columns);
+}
+
+void fetch_points(std::span<const PointKey> row, const PointCache& cache, std::uint32_t frame,
+                  ColorRow colors, std::uint8_t* wishes) {
+  HWY_DYNAMIC_DISPATCH(fetch)
+  (row, {cache.packed_radiance(), cache.born(), frame}, colors, wishes);
+}
+
+void find_wanted(std::span<std::uint8_t> wanted, const float* weight, const std::uint8_t* wishes,
+                 std::size_t first, std::vector<std::uint32_t>& unresolved) {
+  for (std::size_t x = 0; x < wanted.size(); x += 64) {
+    std::uint64_t unknown = HWY_DYNAMIC_DISPATCH(wanted_of)(
+        weight + x, wishes + x, std::min<std::size_t>(64, wanted.size() - x), wanted.data() + x);
+    for (; unknown != 0; unknown &= unknown - 1) {
+      unresolved.push_back(std::uint32_t(first + x) + std::uint32_t(std::countr_zero(unknown)));
+    }
+  }
+}
+
+}  // namespace arris
+#endif
