@@ -75,7 +75,8 @@ struct Corners {
 std::size_t EdgePointImage::bytes() const {
   std::size_t sum = crossings.upper.bytes() + crossings.left.bytes() + crossings.mid_row.bytes() +
                     crossings.mid_column.bytes() + codes.size() * sizeof(PixelCode) +
-                    points.size() * sizeof(PointKey) + samples.bytes();
+                    points.size() * sizeof(PointKey) + samples.bytes() +
+                    occupied.bytes();
   for (const BitPlane& plane : corners.primary) sum += plane.bytes();
   for (const BitPlane& plane : corners.secondary) sum += plane.bytes();
   for (const BitPlane& plane : reach.planes) sum += plane.bytes();
@@ -98,6 +99,7 @@ PixelClasses classify_pixels(RowBand band, EdgePointImage& image) {
       Corners corners;
       corners.primary.fill(inside & ~crossed);
       Word samples = find_occupied({points + x0, std::size_t(count)});
+      image.occupied.row(y)[x0 / kWord] = samples;
       classes.empty += std::uint64_t(count - std::popcount(crossed));
       for (Word rest = crossed; rest != 0; rest &= rest - 1) {
         const int bit = std::countr_zero(rest), x = x0 + bit;

@@ -85,6 +85,7 @@ struct EdgePointImage {
   std::vector<PixelCode> codes;
   std::vector<PointKey> points;
   CornerPlanes corners;
+  BitPlane occupied;  // that have a point
   BitPlane samples;  // whose point is known to lie in the primary region, so that others may use it
   ReachPlanes reach;
 
@@ -96,6 +97,7 @@ struct EdgePointImage {
         codes(pixel_count(width, height)),
         points(codes.size()),
         corners(width, height),
+        occupied(width, height),
         samples(width, height),
         reach(width, height) {}
 

@@ -259,7 +259,9 @@ void remove_points(std::span<const std::uint32_t> pixels, EdgePointImage& image)
     image.points[at] = PointKey();
     const int x = int(at % std::uint32_t(image.width_px)),
               y = int(at / std::uint32_t(image.width_px));
-    image.samples.row(y)[x >> 6] &= ~(std::uint64_t{1} << unsigned(x & 63));
+    const std::uint64_t others = ~(std::uint64_t{1} << unsigned(x & 63));
+    image.samples.row(y)[x >> 6] &= others;
+    image.occupied.row(y)[x >> 6] &= others;
   }
 }
 

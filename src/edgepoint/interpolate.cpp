@@ -57,6 +57,7 @@ HWY_INLINE void find_masks(const EdgePointImage& image, int y, int word, TapMask
   const WordVector complex =
       hn::Not(hn::Or(hn::LoadU(d, image.corners.primary[0].row(y) + word),
                      hn::LoadU(d, image.corners.secondary[0].row(y) + word)));
+  const bool any_complex = !hn::AllFalse(d, hn::Ne(complex, hn::Zero(d)));
   WordVector any = hn::Zero(d);
   const auto add = [&](auto tap) HWY_ATTR {
     constexpr std::size_t kIndex = decltype(tap)::value;
@@ -68,7 +69,12 @@ HWY_INLINE void find_masks(const EdgePointImage& image, int y, int word, TapMask
       const WordVector reached = kIndex % 2 == 1
                                      ? hn::LoadU(d, reach.row(y) + word)
                                      : shifted_words<kOffset.dx>(reach.row(y + kOffset.dy), word);
-      mask = hn::And(mask, hn::Or(reached, complex));
+      mask = hn::And(mask, reached);
+    }
+    // What lies in which region of a complex pixel is not known: any point may be of use to any.
+    if (any_complex) {
+      const WordVector points = shifted_words<kOffset.dx>(image.occupied.row(y + kOffset.dy), word);
+      mask = hn::Or(mask, hn::And(points, complex));
     }
     hn::StoreU(mask, d, out.taps[kIndex].data());
     any = hn::Or(any, mask);
