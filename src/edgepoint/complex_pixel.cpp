@@ -12,8 +12,8 @@
 namespace arris {
 namespace {
 
-constexpr int kSide = 6;  // subpixels
-constexpr int kRow = 8;  // bits of a row: two stay 0, so that nothing is shifted in from other rows
+// Bits of a row of six subpixels: two stay 0, so that nothing is shifted in from other rows.
+constexpr int kRow = 8;
 using Word = std::uint64_t;
 
 constexpr int bit_of(int i, int j) {
@@ -27,21 +27,43 @@ Word shifted(Word word, int dx, int dy) {
 }
 
 // Four segments of half a side as eight of a whole one.
-std::uint8_t spread(std::uint32_t nibble) {
-  return std::uint8_t((nibble & 1U) | (nibble & 2U) << 1U | (nibble & 4U) << 2U |
-                      (nibble & 8U) << 3U);
+constexpr auto kSpread = [] {
+  std::array<std::uint8_t, 16> spread{};
+  for (std::uint32_t n = 0; n < spread.size(); ++n) {
+    spread[n] = std::uint8_t((n & 1U) | (n & 2U) << 1U | (n & 4U) << 2U | (n & 8U) << 3U);
+  }
+  return spread;
+}();
+// `half`: 0 the first four segments of a side, 1 the last.
+std::uint8_t half_side(std::uint8_t crossings, unsigned half) {
+  return kSpread[crossings >> (4 * half) & 15U];
 }
 
 struct Subpixels {
-  std::array<std::uint16_t, std::size_t(kSide* kRow)> edge{};
-  std::array<bool, std::size_t(kSide* kRow)> primary_is_a{};
+  std::array<PixelCode, 4> middle{};  // the pixel's own, row after row
   std::array<Word, 4> primary{}, secondary{};
   struct Sample {
     int bit;
     Rgb color;
   };
-  std::array<Sample, 9> samples;
+  std::array<Sample, 9> samples;  // row of subpixels after row
   std::size_t sample_count = 0;
+};
+
+// What crosses a pixel's sides and middle lines.
+struct PixelLines {
+  std::uint8_t top, mid_row, bottom, left, mid_column, right;
+
+  [[nodiscard]] bool any() const {
+    return (top | mid_row | bottom | left | mid_column | right) != 0;
+  }
+  // Of a subpixel.
+  [[nodiscard]] SideCrossings sides(unsigned column, unsigned row) const {
+    return {half_side(row == 0 ? top : mid_row, column),
+            half_side(column == 0 ? mid_column : right, row),
+            half_side(row == 0 ? mid_row : bottom, column),
+            half_side(column == 0 ? left : mid_column, row)};
+  }
 };
 
 class Builder {
@@ -50,52 +72,55 @@ class Builder {
       : image_(image), x_(x), y_(y), samples_(samples) {}
 
   Subpixels build() {
-    for (int j = 0; j < kSide; ++j) {
-      for (int i = 0; i < kSide; ++i) {
-        const int px = x_ - 1 + i / 2, py = y_ - 1 + j / 2;
+    for (int j = 0; j < 3; ++j) {
+      std::array<bool, 12> is_sample{};
+      for (int i = 0; i < 3; ++i) {
+        const int px = x_ - 1 + i, py = y_ - 1 + j;
         if (px < 0 || py < 0 || px >= image_.width_px || py >= image_.height_px) continue;
-        add(i, j);
+        add_pixel(i, j, is_sample);
       }
+      add_samples(j, is_sample);
     }
     return out_;
   }
 
  private:
-  // Crossings of the upper side of a subpixel, also of those just below the block.
-  [[nodiscard]] std::uint8_t upper(int i, int j) const {
-    const int px = x_ - 1 + i / 2, py = y_ - 1 + j / 2;
-    const CrossingRows& rows = j % 2 == 0 ? image_.crossings.upper : image_.crossings.mid_row;
-    return spread(std::uint32_t(rows.row(py)[px]) >> unsigned(4 * (i % 2)));
-  }
-  [[nodiscard]] std::uint8_t left(int i, int j) const {
-    const int px = x_ - 1 + i / 2, py = y_ - 1 + j / 2;
-    const CrossingRows& rows = i % 2 == 0 ? image_.crossings.left : image_.crossings.mid_column;
-    return spread(std::uint32_t(rows.row(py)[px]) >> unsigned(4 * (j % 2)));
+  // is_sample: by the row of subpixels and the pixel.
+  void add_pixel(int i, int j, std::array<bool, 12>& is_sample) {
+    const int px = x_ - 1 + i, py = y_ - 1 + j;
+    const Crossings& c = image_.crossings;
+    const PixelLines lines{c.upper.row(py)[px], c.mid_row.row(py)[px],    c.upper.row(py + 1)[px],
+                           c.left.row(py)[px],  c.mid_column.row(py)[px], c.left.row(py)[px + 1]};
+    const PointKey point = image_.points[image_.offset(px, py)];
+    const unsigned point_column = point.cell() % 4 / 2, point_row = point.cell() / 8;
+    const auto sample_at = std::size_t(6 * point_row) + std::size_t(i);
+    const int bit = bit_of(2 * i, 2 * j);
+    if (!lines.any()) {
+      constexpr Word kAll = Word{3} | Word{3} << unsigned(kRow);
+      for (Word& corner : out_.primary) corner |= kAll << unsigned(bit);
+      is_sample[sample_at] = !point.is_none();
+      return;
+    }
+    for (unsigned k = 0; k < 4; ++k) {
+      const unsigned column = k % 2, row = k / 2;
+      PixelCode code(classify_boundary(boundary_mask(lines.sides(column, row))));
+      const bool has_point = !point.is_none() && point_column == column && point_row == row;
+      const RegionOf region = has_point ? region_of(code, point.cell()) : RegionOf::ambiguous;
+      if (code.is_simple()) {
+        code.set_primary(region == RegionOf::ambiguous ? tables_.area_a[code.edge()] > 0.5F
+                                                       : region == RegionOf::a);
+      }
+      if (region != RegionOf::ambiguous) is_sample[sample_at] = true;
+      if (i == 1 && j == 1) out_.middle[k] = code;
+      add_corners(code, bit + bit_of(int(column), int(row)));
+    }
   }
 
-  void add(int i, int j) {
-    const int bit = bit_of(i, j);
-    const int px = x_ - 1 + i / 2, py = y_ - 1 + j / 2;
-    PixelCode code(classify_boundary(
-        boundary_mask({upper(i, j), left(i + 1, j), upper(i, j + 1), left(i, j)})));
-    const PointKey point = image_.points[image_.offset(px, py)];
-    const bool has_point =
-        !point.is_none() && int(point.cell() % 4 / 2) == i % 2 && int(point.cell() / 8) == j % 2;
-    const RegionOf region = has_point ? region_of(code, point.cell()) : RegionOf::ambiguous;
-    if (code.is_simple()) {
-      code.set_primary(region == RegionOf::ambiguous ? edge_tables().area_a[code.edge()] > 0.5F
-                                                     : region == RegionOf::a);
-    }
-    if (has_point && region != RegionOf::ambiguous) {
-      const ColorRow row = samples_.row(py);
-      out_.samples[out_.sample_count++] = {bit, {row.r[px], row.g[px], row.b[px]}};
-    }
-    out_.edge[std::size_t(bit)] = std::uint16_t(code.edge());
-    out_.primary_is_a[std::size_t(bit)] = code.primary_is_a();
+  void add_corners(PixelCode code, int bit) {
     if (code.is_complex()) return;
     std::uint32_t in_primary = 15;
     if (code.is_simple()) {
-      in_primary = edge_tables().corners_a[code.edge()] ^ (code.primary_is_a() ? 0U : 15U);
+      in_primary = tables_.corners_a[code.edge()] ^ (code.primary_is_a() ? 0U : 15U);
     }
     for (unsigned k = 0; k < 4; ++k) {
       const Word is_primary = in_primary >> k & 1U;
@@ -104,15 +129,29 @@ class Builder {
     }
   }
 
+  // Of a row of pixels, by rows of subpixels.
+  void add_samples(int j, const std::array<bool, 12>& is_sample) {
+    const int py = y_ - 1 + j;
+    for (int row = 0; row < 2; ++row) {
+      for (int i = 0; i < 3; ++i) {
+        if (!is_sample[std::size_t(6 * row) + std::size_t(i)]) continue;
+        const int px = x_ - 1 + i;
+        const std::uint32_t cell = image_.points[image_.offset(px, py)].cell();
+        const ColorRow colors = samples_.row(py);
+        out_.samples[out_.sample_count++] = {bit_of(2 * i + int(cell % 4 / 2), 2 * j + row),
+                                             {colors.r[px], colors.g[px], colors.b[px]}};
+      }
+    }
+  }
+
   // Of a point that lies in the subpixel, to a quarter of it: each quarter is four cells of the tables.
-  static RegionOf region_of(PixelCode code, std::uint32_t cell) {
+  [[nodiscard]] RegionOf region_of(PixelCode code, std::uint32_t cell) const {
     if (code.is_empty()) return RegionOf::b;
     if (code.is_complex()) return RegionOf::ambiguous;
     const std::uint32_t first = 8 * (cell / 4 % 2) + 2 * (cell % 2);
-    const EdgeTables& tables = edge_tables();
-    const RegionOf region = tables.region_of(code.edge(), first);
+    const RegionOf region = tables_.region_of(code.edge(), first);
     for (const std::uint32_t other : {first + 1, first + 4, first + 5}) {
-      if (tables.region_of(code.edge(), other) != region) return RegionOf::ambiguous;
+      if (tables_.region_of(code.edge(), other) != region) return RegionOf::ambiguous;
     }
     return region;
   }
@@ -120,6 +159,7 @@ class Builder {
   const EdgePointImage& image_;
   int x_, y_;
   ColorRows& samples_;
+  const EdgeTables& tables_ = edge_tables();
   Subpixels out_;
 };
 
@@ -141,20 +181,30 @@ Matrices find_matrices(const Subpixels& s) {
   return HWY_NAMESPACE::chain_reach<Word>(right, down);
 }
 
+// By 5 (dy + 2) + dx + 2: the place in kReachOffset of an offset or its opposite; of the middle none.
+struct OffsetPlace {
+  std::uint8_t place = 0;
+  bool opposite = false;
+};
+constexpr auto kOffsetPlaces = [] {
+  std::array<OffsetPlace, 25> places{};
+  for (std::size_t k = 0; k < kReachOffsets; ++k) {
+    const int at = 5 * kReachOffset[k].dy + kReachOffset[k].dx;
+    places[std::size_t(12 + at)] = {std::uint8_t(k), false};
+    places[std::size_t(12 - at)] = {std::uint8_t(k), true};
+  }
+  return places;
+}();
+
 // Whether a region of one subpixel reaches the primary region of another.
 bool reaches(const Matrices& matrices, int from, int to, bool from_primary) {
   const int dx = to % kRow - from % kRow, dy = to / kRow - from / kRow;
   if (dx == 0 && dy == 0) return from_primary;
   if (dx < -2 || dx > 2 || dy < -2 || dy > 2) return false;
-  for (std::size_t k = 0; k < kReachOffsets; ++k) {
-    if (kReachOffset[k].dx == dx && kReachOffset[k].dy == dy) {
-      return ((from_primary ? matrices[k].pp : matrices[k].sp) >> unsigned(from) & 1U) != 0;
-    }
-    if (kReachOffset[k].dx == -dx && kReachOffset[k].dy == -dy) {
-      return ((from_primary ? matrices[k].pp : matrices[k].ps) >> unsigned(to) & 1U) != 0;
-    }
-  }
-  return false;
+  const OffsetPlace offset = kOffsetPlaces[std::size_t(12 + 5 * dy + dx)];
+  const HWY_NAMESPACE::ReachMatrix<Word>& m = matrices[offset.place];
+  const Word reached = from_primary ? m.pp : offset.opposite ? m.ps : m.sp;
+  return (reached >> unsigned(offset.opposite ? to : from) & 1U) != 0;
 }
 
 std::optional<Rgb> region_color(const Subpixels& s, const Matrices& matrices, int bit,
@@ -179,24 +229,22 @@ Rgb reconstruct_complex_pixel(const EdgePointImage& image, int x, int y, ColorRo
   const Subpixels s = Builder(image, x, y, samples).build();
   const Matrices matrices = find_matrices(s);
   Rgb sum;
-  for (int j = 2; j < 4; ++j) {
-    for (int i = 2; i < 4; ++i) {
-      const int bit = bit_of(i, j);
-      const std::uint32_t edge = s.edge[std::size_t(bit)];
-      if (edge == kComplexEdge) {
-        sum += fallback;
-        continue;
-      }
-      const Rgb primary = region_color(s, matrices, bit, true).value_or(fallback);
-      if (edge == kEmptyEdge) {
-        sum += primary;
-        continue;
-      }
-      const Rgb secondary = region_color(s, matrices, bit, false).value_or(fallback);
-      const float area_a = edge_tables().area_a[edge];
-      const float area = s.primary_is_a[std::size_t(bit)] ? area_a : 1 - area_a;
-      sum += primary * area + secondary * (1 - area);
+  for (int k = 0; k < 4; ++k) {
+    const int bit = bit_of(2 + k % 2, 2 + k / 2);
+    const PixelCode code = s.middle[std::size_t(k)];
+    if (code.is_complex()) {
+      sum += fallback;
+      continue;
     }
+    const Rgb primary = region_color(s, matrices, bit, true).value_or(fallback);
+    if (code.is_empty()) {
+      sum += primary;
+      continue;
+    }
+    const Rgb secondary = region_color(s, matrices, bit, false).value_or(fallback);
+    const float area_a = edge_tables().area_a[code.edge()];
+    const float area = code.primary_is_a() ? area_a : 1 - area_a;
+    sum += primary * area + secondary * (1 - area);
   }
   return sum * 0.25F;
 }

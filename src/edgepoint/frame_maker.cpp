@@ -53,9 +53,24 @@ FrameMaker::FrameMaker(int width_px, int height_px)
       wanted_(image_.codes.size(), 255),
       bands_(make_bands(height_px)) {}
 
-void FrameMaker::find_depth(const PixelView& view, int threads) {
-  parallel_for(std::size_t(depth_.cell_rows()), {.grain = 8, .threads = threads},
-               [&](std::size_t i) { depth_.fill_cells(image_.points, int(i)); });
+void FrameMaker::find_points(const PixelView& view, const PointCache& cache, int threads) {
+  static_assert(kBandRows % DepthCells::kSide == 0, "bands are of whole cells");
+  const std::vector<RowBand> block_rows = find_block_rows(view, cache, threads);
+  std::vector<std::vector<std::uint32_t>> seen(bands_.size());
+  parallel_for(bands_.size(), {.grain = 1, .threads = threads}, [&](std::size_t i) {
+    const RowBand band = bands_[i];
+    seen[i].resize(block_rows.size() + 1);
+    project_points(view, cache, block_rows, band, image_.points, seen[i]);
+    // While the band's points are in the processor's cache.
+    const int last = (band.last + DepthCells::kSide - 1) / DepthCells::kSide;
+    for (int row = band.first / DepthCells::kSide; row < last; ++row) {
+      depth_.fill_cells(image_.points, row);
+    }
+  });
+  seen_.assign(block_rows.size(), 0);
+  for (const std::vector<std::uint32_t>& of_band : seen) {
+    for (std::size_t i = 0; i < seen_.size(); ++i) seen_[i] += of_band[i];
+  }
   const float size = pixel_size(view);
   parallel_for(std::size_t(depth_.limit_rows()), {.grain = 16, .threads = threads},
                [&](std::size_t i) { depth_.fill_limits(int(i), size); });
@@ -79,9 +94,7 @@ FrameReport FrameMaker::make(const PixelView& view, std::span<const WorldEdge> e
   FrameReport report;
   const ParallelOptions parallel{.grain = 1, .threads = settings.threads};
   Stopwatch watch;
-  parallel_for(bands_.size(), parallel,
-               [&](std::size_t i) { project_points(view, cache, bands_[i], image_.points); });
-  find_depth(view, settings.threads);
+  find_points(view, cache, settings.threads);
   report.times.points = watch.lap();
   rasterize(view, edges, settings.threads);
   report.times.raster = watch.lap();
@@ -99,6 +112,7 @@ FrameReport FrameMaker::make(const PixelView& view, std::span<const WorldEdge> e
     hidden[i] = find_hidden_points(image_, depth_, bands_[i], pixel_size(view));
   });
   for (const std::vector<std::uint32_t>& pixels : hidden) {
+    for (const std::uint32_t pixel : pixels) --seen_[image_.points[pixel].point() / kPointBlock];
     remove_points(pixels, image_);
     report.hidden += pixels.size();
   }
@@ -109,16 +123,15 @@ FrameReport FrameMaker::make(const PixelView& view, std::span<const WorldEdge> e
   parallel_for(bands_.size(), parallel, [&](std::size_t i) {
     reports[i] = reconstruct_band(image_, cache, reconstruction, bands_[i], picture, wanted_);
   });
-  std::vector<std::uint32_t> unresolved, seen(cache.blocks().size());
+  std::vector<std::uint32_t> unresolved;
   ReconstructionTimes spent;
   for (const BandReport& band : reports) {
     std::copy(band.unresolved.begin(), band.unresolved.end(), std::back_inserter(unresolved));
-    for (std::size_t i = 0; i < seen.size(); ++i) seen[i] += band.seen[i];
     spent += band.times;
   }
-  cache.set_seen(seen);
+  cache.set_seen(seen_);
   report.unresolved = unresolved.size();
-  fill_holes(image_, std::move(unresolved), picture);
+  fill_holes(image_, std::move(unresolved), settings.threads, picture);
   const double took = watch.lap();
   const double part = spent.total() > 0 ? took / spent.total() : 0;
   report.times.interpolation = part * spent.interpolation;

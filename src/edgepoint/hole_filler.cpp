@@ -1,10 +1,11 @@
 #include "edgepoint/hole_filler.h"
 
+#include <algorithm>
 #include <cstddef>
-#include <utility>
 #include <vector>
 
 #include "arris/math.h"
+#include "base/parallel_for.h"
 
 namespace arris {
 namespace {
@@ -14,44 +15,72 @@ struct Cell {
   float count = 0;
 };
 
-struct Grid {
-  int width, height;
-  std::vector<Cell> cells;
-
-  Grid(int w, int h) : width(w), height(h), cells(std::size_t(w) * std::size_t(h)) {}
-  [[nodiscard]] Cell& at(int x, int y) {
-    return cells[std::size_t(y) * std::size_t(width) + std::size_t(x)];
-  }
-};
-
 constexpr int kFirstCell = 8;  // pixels
 
-Grid make_first_grid(const Image& picture, const std::vector<bool>& is_hole) {
-  Grid grid((picture.width_px + kFirstCell - 1) / kFirstCell,
-            (picture.height_px + kFirstCell - 1) / kFirstCell);
-  for (int y = 0; y < picture.height_px; ++y) {
-    for (int x = 0; x < picture.width_px; ++x) {
-      const std::size_t at = picture.offset(x, y);
-      if (is_hole[at / 3]) continue;
-      Cell& cell = grid.at(x / kFirstCell, y / kFirstCell);
-      cell.sum += Rgb{picture.values[at], picture.values[at + 1], picture.values[at + 2]};
-      ++cell.count;
+// Means over cells of the picture, of 8 × 8 pixels and of ever twice as many, made where they are asked for.
+class Grids {
+ public:
+  Grids(const Image& picture, const std::vector<bool>& is_hole)
+      : picture_(picture), is_hole_(is_hole) {
+    int width = (picture.width_px + kFirstCell - 1) / kFirstCell;
+    int height = (picture.height_px + kFirstCell - 1) / kFirstCell;
+    levels_.emplace_back(width, height);
+    while (width > 1 || height > 1) {
+      width = (width + 1) / 2;
+      height = (height + 1) / 2;
+      levels_.emplace_back(width, height);
     }
   }
-  return grid;
-}
 
-Grid make_coarser(Grid& fine) {
-  Grid coarse((fine.width + 1) / 2, (fine.height + 1) / 2);
-  for (int y = 0; y < fine.height; ++y) {
-    for (int x = 0; x < fine.width; ++x) {
-      Cell& cell = coarse.at(x / 2, y / 2);
-      cell.sum += fine.at(x, y).sum;
-      cell.count += fine.at(x, y).count;
-    }
+  [[nodiscard]] std::size_t levels() const { return levels_.size(); }
+  const Cell& at(std::size_t level, int x, int y) {
+    Level& l = levels_[level];
+    Cell& cell = l.cells[std::size_t(y) * std::size_t(l.width) + std::size_t(x)];
+    if (cell.count == kUnknown) cell = level == 0 ? of_pixels(x, y) : of_cells(level - 1, x, y);
+    return cell;
   }
-  return coarse;
-}
+
+ private:
+  static constexpr float kUnknown = -1;
+  struct Level {
+    int width, height;
+    std::vector<Cell> cells;
+
+    Level(int w, int h)
+        : width(w), height(h), cells(std::size_t(w) * std::size_t(h), Cell{{}, kUnknown}) {}
+  };
+
+  [[nodiscard]] Cell of_pixels(int cell_x, int cell_y) const {
+    Cell cell;
+    const int x0 = cell_x * kFirstCell, y0 = cell_y * kFirstCell;
+    for (int y = y0; y < std::min(y0 + kFirstCell, picture_.height_px); ++y) {
+      for (int x = x0; x < std::min(x0 + kFirstCell, picture_.width_px); ++x) {
+        const std::size_t at = picture_.offset(x, y);
+        if (is_hole_[at / 3]) continue;
+        cell.sum += Rgb{picture_.values[at], picture_.values[at + 1], picture_.values[at + 2]};
+        ++cell.count;
+      }
+    }
+    return cell;
+  }
+
+  Cell of_cells(std::size_t level, int cell_x, int cell_y) {
+    Cell cell;
+    const int x0 = 2 * cell_x, y0 = 2 * cell_y;
+    for (int y = y0; y < std::min(y0 + 2, levels_[level].height); ++y) {
+      for (int x = x0; x < std::min(x0 + 2, levels_[level].width); ++x) {
+        const Cell& part = at(level, x, y);
+        cell.sum += part.sum;
+        cell.count += part.count;
+      }
+    }
+    return cell;
+  }
+
+  const Image& picture_;
+  const std::vector<bool>& is_hole_;
+  std::vector<Level> levels_;
+};
 
 // Steps of up to two pixels each.
 constexpr int kSteps = 8;
@@ -87,39 +116,43 @@ Cell collect_reached(const EdgePointImage& image, const std::vector<bool>& is_ho
 }
 
 // Leaves those holes that nothing reaches.
-void spread_reached(const EdgePointImage& image, std::vector<std::uint32_t>& holes,
+void spread_reached(const EdgePointImage& image, int threads, std::vector<std::uint32_t>& holes,
                     std::vector<bool>& is_hole, Image& picture) {
+  std::vector<Cell> around;
   for (int step = 0; step < kSteps && !holes.empty(); ++step) {
-    std::vector<std::pair<std::uint32_t, Rgb>> filled;
-    for (const std::uint32_t hole : holes) {
-      const Cell cell = collect_reached(image, is_hole, picture, hole);
-      if (cell.count > 0) filled.emplace_back(hole, cell.sum * (1 / cell.count));
+    around.resize(holes.size());
+    parallel_for(holes.size(), {.grain = 256, .threads = threads}, [&](std::size_t i) {
+      around[i] = collect_reached(image, is_hole, picture, holes[i]);
+    });
+    std::size_t left = 0;
+    for (std::size_t i = 0; i < holes.size(); ++i) {
+      if (around[i].count > 0) {
+        set_color(picture, holes[i], around[i].sum * (1 / around[i].count));
+        is_hole[holes[i]] = false;
+      } else {
+        holes[left++] = holes[i];
+      }
     }
-    if (filled.empty()) return;
-    for (const auto& [hole, color] : filled) {
-      set_color(picture, hole, color);
-      is_hole[hole] = false;
-    }
-    std::erase_if(holes, [&](std::uint32_t hole) { return !is_hole[hole]; });
+    if (left == holes.size()) return;
+    holes.resize(left);
   }
 }
 
 }  // namespace
 
-void fill_holes(const EdgePointImage& image, std::vector<std::uint32_t> holes, Image& picture) {
+void fill_holes(const EdgePointImage& image, std::vector<std::uint32_t> holes, int threads,
+                Image& picture) {
   if (holes.empty()) return;
   std::vector<bool> is_hole(picture.values.size() / 3);
   for (const std::uint32_t hole : holes) is_hole[hole] = true;
-  spread_reached(image, holes, is_hole, picture);
+  spread_reached(image, threads, holes, is_hole, picture);
   if (holes.empty()) return;
-  std::vector<Grid> grids{make_first_grid(picture, is_hole)};
-  while (grids.back().width > 1 || grids.back().height > 1)
-    grids.push_back(make_coarser(grids.back()));
+  Grids grids(picture, is_hole);
   for (const std::uint32_t hole : holes) {
     int x = int(hole % std::uint32_t(picture.width_px)) / kFirstCell;
     int y = int(hole / std::uint32_t(picture.width_px)) / kFirstCell;
-    for (Grid& grid : grids) {
-      const Cell& cell = grid.at(x, y);
+    for (std::size_t level = 0; level < grids.levels(); ++level) {
+      const Cell& cell = grids.at(level, x, y);
       if (cell.count > 0) {
         set_color(picture, hole, cell.sum * (1 / cell.count));
         break;

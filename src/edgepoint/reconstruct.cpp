@@ -33,9 +33,7 @@ class Band {
         samples_(kSampleRows, width_),
         primary_(kPrimaryRows, width_),
         weights_(std::size_t(kPrimaryRows) * weight_stride()),
-        wishes_(std::size_t(kSampleRows) * weight_stride()) {
-    report_.seen.assign(cache.blocks().size(), 0);
-  }
+        wishes_(std::size_t(kSampleRows) * weight_stride()) {}
 
   BandReport run() {
     const int first = std::max(band_.first - 1, 0),
@@ -67,10 +65,6 @@ class Band {
     if (y < 0 || y >= image_.height_px) return;
     const std::span row(image_.points.data() + image_.offset(0, y), std::size_t(width_));
     fetch_points(row, cache_, settings_.frame, samples_.row(y), wish_row(y));
-    if (y < band_.first || y >= band_.last) return;
-    for (const PointKey key : row) {
-      if (!key.is_none()) ++report_.seen[key.point() / kPointBlock];
-    }
   }
 
   // Row y, when its neighbours are interpolated.

@@ -121,9 +121,11 @@ TEST(PointRaster, keeps_the_nearest_point_of_each_pixel) {
   PointCache cache(8000);
   cache.add(random_points(random, 6000), 0);
   std::vector<PointKey> points(std::size_t(kWidth) * kHeight), banded(points.size());
-  project_points(view, cache, {0, kHeight}, points);
+  const std::vector<RowBand> rows = find_block_rows(view, cache, 0);
+  std::vector<std::uint32_t> seen(rows.size() + 1), banded_seen(rows.size() + 1);
+  project_points(view, cache, rows, {0, kHeight}, points, seen);
   for (const RowBand band : {RowBand{0, 7}, RowBand{7, 30}, RowBand{30, kHeight}}) {
-    project_points(view, cache, band, banded);
+    project_points(view, cache, rows, band, banded, banded_seen);
   }
   std::vector<double> nearest(points.size(), INFINITY);
   int near_border = 0;
@@ -149,6 +151,8 @@ TEST(PointRaster, keeps_the_nearest_point_of_each_pixel) {
   for (std::size_t i = 0; i < points.size(); ++i) {
     EXPECT_FALSE(points[i] < banded[i] || banded[i] < points[i]);
     found += points[i].is_none() ? 0 : 1;
+    if (!points[i].is_none()) --seen[points[i].point() / kPointBlock];
+    if (!banded[i].is_none()) --banded_seen[banded[i].point() / kPointBlock];
     if (std::isinf(nearest[i])) continue;
     ASSERT_FALSE(points[i].is_none());
     if (nearest[i] > 1e20) continue;
@@ -157,6 +161,8 @@ TEST(PointRaster, keeps_the_nearest_point_of_each_pixel) {
   }
   EXPECT_GT(compared, 300);
   EXPECT_GE(compared + near_border + 200, found);
+  // Those of each block were counted.
+  for (std::size_t b = 0; b < rows.size(); ++b) EXPECT_TRUE(seen[b] == 0 && banded_seen[b] == 0);
 }
 
 // Depths of points by pixel; 0: none. No edges.
@@ -350,7 +356,7 @@ TEST(HoleFiller, colours_cross_no_edge) {
       picture.at(x, y, 2) = 7;  // what no hole keeps
     }
   }
-  fill_holes(image, holes, picture);
+  fill_holes(image, holes, 0, picture);
   for (int y = 0; y < kHeight; ++y) {
     for (int x = 30; x <= 52; ++x) {
       EXPECT_EQ(picture.at(x, y, 2), 0);
