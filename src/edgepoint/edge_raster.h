@@ -32,7 +32,10 @@ struct ScreenEdge {
 // An edge of no length where nothing of it is in the picture.
 ScreenEdge project_edge(const PixelView& view, const WorldEdge& edge);
 
-// Clears and fills the crossings of a band's rows. Bands share nothing.
+// Of a band's rows. Bands share nothing.
+void clear_crossings(RowBand band, int height_px, Crossings& crossings);
+
+// Adds to the crossings of a band's rows.
 void rasterize_edges(std::span<const ScreenEdge> edges, const DepthCells& depth, RowBand band,
                      int width_px, int height_px, Crossings& crossings);
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <iterator>
 #include <utility>
 
@@ -26,6 +27,9 @@ std::vector<RowBand> make_bands(int height) {
   for (int y = 0; y < height; y += kBandRows) bands.push_back({y, std::min(y + kBandRows, height)});
   return bands;
 }
+
+// Edges that are projected at a time.
+constexpr std::size_t kChunkEdges = 2048;
 
 class Stopwatch {
  public:
@@ -76,19 +80,40 @@ void FrameMaker::find_points(const PixelView& view, const PointCache& cache, int
                [&](std::size_t i) { depth_.fill_limits(int(i), size); });
 }
 
-void FrameMaker::rasterize(const PixelView& view, std::span<const WorldEdge> edges, int threads) {
-  screen_edges_.resize(edges.size());
-  parallel_for(edges.size(), {.grain = 1024, .threads = threads},
-               [&](std::size_t i) { screen_edges_[i] = project_edge(view, edges[i]); });
-  std::erase_if(screen_edges_, [](const ScreenEdge& e) { return e.x0 == e.x1 && e.y0 == e.y1; });
-  parallel_for(bands_.size(), {.grain = 1, .threads = threads}, [&](std::size_t i) {
-    rasterize_edges(screen_edges_, depth_, bands_[i], image_.width_px, image_.height_px,
-                    image_.crossings);
+// Chunks of edges are projected and handed to the bands that they cross; those that are not in the picture to none.
+void FrameMaker::rasterize(const PixelView& view, EdgeLists lists, int threads) {
+  std::vector<std::span<const WorldEdge>> chunks;
+  for (std::span<const WorldEdge> list : lists) {
+    for (; !list.empty(); list = list.subspan(chunks.back().size())) {
+      chunks.push_back(list.first(std::min(kChunkEdges, list.size())));
+    }
+  }
+  const std::size_t bands = bands_.size();
+  if (screen_edges_.size() < chunks.size() * bands) screen_edges_.resize(chunks.size() * bands);
+  parallel_for(chunks.size(), {.grain = 1, .threads = threads}, [&](std::size_t c) {
+    const std::span of_bands = std::span(screen_edges_).subspan(c * bands, bands);
+    for (std::vector<ScreenEdge>& edges : of_bands) edges.clear();
+    for (const WorldEdge& world : chunks[c]) {
+      const ScreenEdge edge = project_edge(view, world);
+      if (edge.x0 == edge.x1 && edge.y0 == edge.y1) continue;
+      const auto [upper, lower] = std::minmax(edge.y0, edge.y1);
+      // Each band has the line between it and the next.
+      const int first = std::max(int(std::floor(upper)) - 1, 0) / kBandRows;
+      const int last = std::min(int(std::floor(lower)) + 1, image_.height_px - 1) / kBandRows;
+      for (int b = first; b <= last; ++b) of_bands[std::size_t(b)].push_back(edge);
+    }
+  });
+  parallel_for(bands, {.grain = 1, .threads = threads}, [&](std::size_t b) {
+    clear_crossings(bands_[b], image_.height_px, image_.crossings);
+    for (std::size_t c = 0; c < chunks.size(); ++c) {
+      rasterize_edges(screen_edges_[c * bands + b], depth_, bands_[b], image_.width_px,
+                      image_.height_px, image_.crossings);
+    }
   });
 }
 
-FrameReport FrameMaker::make(const PixelView& view, std::span<const WorldEdge> edges,
-                             PointCache& cache, const FrameSettings& settings, Image& picture) {
+FrameReport FrameMaker::make(const PixelView& view, EdgeLists edges, PointCache& cache,
+                             const FrameSettings& settings, Image& picture) {
   ARRIS_CHECK(view.width_px == image_.width_px && view.height_px == image_.height_px,
               double(view.width_px), double(view.height_px));
   FrameReport report;
@@ -131,7 +156,7 @@ FrameReport FrameMaker::make(const PixelView& view, std::span<const WorldEdge> e
   }
   cache.set_seen(seen_);
   report.unresolved = unresolved.size();
-  fill_holes(image_, std::move(unresolved), settings.threads, picture);
+  fill_holes(image_, unresolved, settings.threads, picture);
   const double took = watch.lap();
   const double part = spent.total() > 0 ? took / spent.total() : 0;
   report.times.interpolation = part * spent.interpolation;

@@ -45,7 +45,8 @@ class FrameMaker {
   FrameMaker(int width_px, int height_px);
 
   // The view's size must be the maker's. Tells the cache what was seen of it.
-  FrameReport make(const PixelView& view, std::span<const WorldEdge> edges, PointCache& cache,
+  using EdgeLists = std::span<const std::span<const WorldEdge>>;
+  FrameReport make(const PixelView& view, EdgeLists edges, PointCache& cache,
                    const FrameSettings& settings, Image& picture);
 
   [[nodiscard]] const EdgePointImage& image() const { return image_; }
@@ -54,11 +55,11 @@ class FrameMaker {
 
  private:
   void find_points(const PixelView& view, const PointCache& cache, int threads);
-  void rasterize(const PixelView& view, std::span<const WorldEdge> edges, int threads);
+  void rasterize(const PixelView& view, EdgeLists lists, int threads);
 
   EdgePointImage image_;
   DepthCells depth_;
-  std::vector<ScreenEdge> screen_edges_;
+  std::vector<std::vector<ScreenEdge>> screen_edges_;  // by chunk and band
   std::vector<std::uint8_t> wanted_;
   std::vector<std::uint32_t> seen_;  // of the points of each block
   std::vector<RowBand> bands_;

@@ -7,7 +7,7 @@
 #pragma once
 
 #include <cstdint>
-#include <vector>
+#include <span>
 
 #include "arris/image.h"
 #include "edgepoint/edge_point_image.h"
@@ -15,7 +15,7 @@
 namespace arris {
 
 // holes: offsets of pixels, each once.
-void fill_holes(const EdgePointImage& image, std::vector<std::uint32_t> holes, int threads,
+void fill_holes(const EdgePointImage& image, std::span<const std::uint32_t> holes, int threads,
                 Image& picture);
 
 }  // namespace arris

@@ -100,6 +100,13 @@ void fetch(std::span<const PointKey> row, const PointData& data, ColorRow colors
     const hn::RebindToSigned<PixelLanes> s;
     const hn::Rebind<std::uint8_t, PixelLanes> bytes;
     const auto some = hn::Ne(high, hn::Set(u, kNone));
+    if (hn::AllFalse(u, some)) {
+      for (float* const channel : {colors.r, colors.g, colors.b}) {
+        hn::StoreU(hn::Zero(f), f, channel + x);
+      }
+      hn::StoreU(hn::Zero(bytes), bytes, wishes + x);
+      return;
+    }
     // Where there is no point the first stands in.
     const auto point = hn::IfThenElseZero(some, hn::ShiftRight<4>(low));
     const auto packed =

@@ -27,6 +27,7 @@ Crossings rasterize(const std::vector<ScreenEdge>& edges, int bands) {
   Crossings crossings(kWidth, kHeight);
   for (int b = 0; b < bands; ++b) {
     const RowBand band{kHeight * b / bands, kHeight * (b + 1) / bands};
+    clear_crossings(band, kHeight, crossings);
     rasterize_edges(edges, depth, band, kWidth, kHeight, crossings);
   }
   return crossings;
@@ -193,6 +194,7 @@ TEST(EdgeRaster, hidden_edges_leave_no_mark) {
   for (const float distance : {1.0F, 2.0F, 3.0F}) {
     const ScreenEdge edge{5, 5, 1 / distance, 60, 40, 1 / distance};
     Crossings crossings(kWidth, kHeight);
+    clear_crossings({0, kHeight}, kHeight, crossings);
     rasterize_edges({&edge, 1}, depth, {0, kHeight}, kWidth, kHeight, crossings);
     int count = 0;
     for (int y = 0; y < kHeight; ++y) {

@@ -177,6 +177,7 @@ EdgePointImage image_of_depths(const std::vector<float>& depths,
   const std::vector<PointKey> none(image.points.size());
   for (int i = 0; i < depth.cell_rows(); ++i) depth.fill_cells(none, i);
   for (int i = 0; i < depth.limit_rows(); ++i) depth.fill_limits(i, 0.01F);
+  clear_crossings({0, kHeight}, kHeight, image.crossings);
   rasterize_edges(edges, depth, {0, kHeight}, kWidth, kHeight, image.crossings);
   classify_pixels({0, kHeight}, image);
   find_reach(image.corners, {0, kHeight}, image.reach);
