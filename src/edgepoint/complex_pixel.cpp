@@ -26,17 +26,25 @@ Word shifted(Word word, int dx, int dy) {
   return by >= 0 ? word >> unsigned(by) : word << unsigned(-by);
 }
 
-// Four segments of half a side as eight of a whole one.
+// Four segments of half a side as eight of a whole one, in their order and in the opposite one.
+struct SpreadTables {
+  std::array<std::uint8_t, 16> forward{}, backward{};
+};
 constexpr auto kSpread = [] {
-  std::array<std::uint8_t, 16> spread{};
-  for (std::uint32_t n = 0; n < spread.size(); ++n) {
-    spread[n] = std::uint8_t((n & 1U) | (n & 2U) << 1U | (n & 4U) << 2U | (n & 8U) << 3U);
+  SpreadTables tables;
+  for (unsigned n = 0; n < 16; ++n) {
+    for (unsigned bit = 0; bit < 4; ++bit) {
+      if ((n >> bit & 1U) == 0) continue;
+      tables.forward[n] = std::uint8_t(tables.forward[n] | 1U << 2 * bit);
+      tables.backward[n] = std::uint8_t(tables.backward[n] | 128U >> 2 * bit);
+    }
   }
-  return spread;
+  return tables;
 }();
 // `half`: 0 the first four segments of a side, 1 the last.
-std::uint8_t half_side(std::uint8_t crossings, unsigned half) {
-  return kSpread[crossings >> (4 * half) & 15U];
+std::uint32_t half_side(std::uint8_t crossings, unsigned half,
+                        const std::array<std::uint8_t, 16>& spread) {
+  return spread[crossings >> (4 * half) & 15U];
 }
 
 struct Subpixels {
@@ -57,12 +65,12 @@ struct PixelLines {
   [[nodiscard]] bool any() const {
     return (top | mid_row | bottom | left | mid_column | right) != 0;
   }
-  // Of a subpixel.
-  [[nodiscard]] SideCrossings sides(unsigned column, unsigned row) const {
-    return {half_side(row == 0 ? top : mid_row, column),
-            half_side(column == 0 ? mid_column : right, row),
-            half_side(row == 0 ? mid_row : bottom, column),
-            half_side(column == 0 ? left : mid_column, row)};
+  // Of a subpixel, as boundary_mask() has them.
+  [[nodiscard]] std::uint32_t boundary(unsigned column, unsigned row) const {
+    return half_side(row == 0 ? top : mid_row, column, kSpread.forward) |
+           half_side(column == 0 ? mid_column : right, row, kSpread.forward) << 8U |
+           half_side(row == 0 ? mid_row : bottom, column, kSpread.backward) << 16U |
+           half_side(column == 0 ? left : mid_column, row, kSpread.backward) << 24U;
   }
 };
 
@@ -103,7 +111,7 @@ class Builder {
     }
     for (unsigned k = 0; k < 4; ++k) {
       const unsigned column = k % 2, row = k / 2;
-      PixelCode code(classify_boundary(boundary_mask(lines.sides(column, row))));
+      PixelCode code(classify_boundary(lines.boundary(column, row)));
       const bool has_point = !point.is_none() && point_column == column && point_row == row;
       const RegionOf region = has_point ? region_of(code, point.cell()) : RegionOf::ambiguous;
       if (code.is_simple()) {

@@ -87,7 +87,7 @@ TEST(PointCache, replaces_points_where_they_are_and_makes_room_when_full) {
   cache.add({&point, 1}, 40);
   EXPECT_EQ(cache.size(), full);
   EXPECT_EQ(cache.x()[3], point.position.x);
-  EXPECT_EQ(cache.born()[3], 40);
+  EXPECT_EQ(cache.looks()[3].born, 40);
 }
 
 TEST(PointCache, moves_the_points_of_an_object_only) {
@@ -106,7 +106,7 @@ TEST(PointCache, moves_the_points_of_an_object_only) {
       count += is_moved ? 1 : 0;
       if (!is_moved) continue;
       EXPECT_FLOAT_EQ(moved.z()[i], cache.z()[i] + 3);
-      EXPECT_EQ(std::uint16_t(5 - moved.born()[i]), kStaleAge);
+      EXPECT_EQ(std::uint16_t(5 - moved.looks()[i].born), kStaleAge);
       EXPECT_LE(moved.blocks()[b].lower.x, moved.x()[i]);
       EXPECT_GE(moved.blocks()[b].upper.x, moved.x()[i]);
     }
