@@ -13,8 +13,9 @@
 namespace arris {
 namespace {
 
-constexpr int kSide = 6;  // subpixels
-constexpr int kRow = 8;  // bits of a row: two stay 0, so that nothing is shifted in from other rows
+// Bits of a row of six subpixels: two stay 0, so that nothing is shifted in from other rows.
+constexpr int kRow = 8;
+constexpr std::size_t kSubpixelBits = 48;
 using Word = std::uint64_t;
 
 constexpr int bit_of(int i, int j) {
@@ -27,20 +28,50 @@ Word shifted(Word word, int dx, int dy) {
   return by >= 0 ? word >> unsigned(by) : word << unsigned(-by);
 }
 
-// Four segments of half a side as eight of a whole one.
-std::uint8_t spread(std::uint32_t nibble) {
-  return std::uint8_t((nibble & 1U) | (nibble & 2U) << 1U | (nibble & 4U) << 2U |
-                      (nibble & 8U) << 3U);
+// Four segments of half a side as eight of a whole one, in their order and in the opposite one.
+struct SpreadTables {
+  std::array<std::uint8_t, 16> forward{}, backward{};
+};
+constexpr auto kSpread = [] {
+  SpreadTables tables;
+  for (unsigned n = 0; n < 16; ++n) {
+    for (unsigned bit = 0; bit < 4; ++bit) {
+      if ((n >> bit & 1U) == 0) continue;
+      tables.forward[n] = std::uint8_t(tables.forward[n] | 1U << 2 * bit);
+      tables.backward[n] = std::uint8_t(tables.backward[n] | 128U >> 2 * bit);
+    }
+  }
+  return tables;
+}();
+// `half`: 0 the first four segments of a side, 1 the last.
+std::uint32_t half_side(std::uint8_t crossings, unsigned half,
+                        const std::array<std::uint8_t, 16>& spread) {
+  return spread[crossings >> (4 * half) & 15U];
 }
 
 struct Subpixels {
-  std::array<std::uint16_t, std::size_t(kSide* kRow)> edge{};
-  std::array<bool, std::size_t(kSide* kRow)> primary_is_a{};
+  std::array<PixelCode, 4> middle{};  // the pixel's own, row after row
   std::array<Word, 4> primary{}, secondary{};
   // Whose primary region's colour is known, and what it counts.
   Word known = 0;
-  std::array<Rgb, std::size_t(kSide* kRow)> color;
-  std::array<float, std::size_t(kSide* kRow)> weight{};
+  std::array<Rgb, kSubpixelBits> color;
+  std::array<float, kSubpixelBits> weight;
+};
+
+// What crosses a pixel's sides and middle lines.
+struct PixelLines {
+  std::uint8_t top, mid_row, bottom, left, mid_column, right;
+
+  [[nodiscard]] bool any() const {
+    return (top | mid_row | bottom | left | mid_column | right) != 0;
+  }
+  // Of a subpixel, as boundary_mask() has them.
+  [[nodiscard]] std::uint32_t boundary(unsigned column, unsigned row) const {
+    return half_side(row == 0 ? top : mid_row, column, kSpread.forward) |
+           half_side(column == 0 ? mid_column : right, row, kSpread.forward) << 8U |
+           half_side(row == 0 ? mid_row : bottom, column, kSpread.backward) << 16U |
+           half_side(column == 0 ? left : mid_column, row, kSpread.backward) << 24U;
+  }
 };
 
 class Builder {
@@ -50,54 +81,57 @@ class Builder {
       : image_(image), x_(x), y_(y), samples_(samples), around_(around) {}
 
   Subpixels build() {
-    for (int j = 0; j < kSide; ++j) {
-      for (int i = 0; i < kSide; ++i) {
-        const int px = x_ - 1 + i / 2, py = y_ - 1 + j / 2;
+    for (int j = 0; j < 3; ++j) {
+      for (int i = 0; i < 3; ++i) {
+        const int px = x_ - 1 + i, py = y_ - 1 + j;
         if (px < 0 || py < 0 || px >= image_.width_px || py >= image_.height_px) continue;
-        add(i, j);
+        add_pixel(i, j);
       }
     }
     return out_;
   }
 
  private:
-  // Crossings of the upper side of a subpixel, also of those just below the block.
-  [[nodiscard]] std::uint8_t upper(int i, int j) const {
-    const int px = x_ - 1 + i / 2, py = y_ - 1 + j / 2;
-    const CrossingRows& rows = j % 2 == 0 ? image_.crossings.upper : image_.crossings.mid_row;
-    return spread(std::uint32_t(rows.row(py)[px]) >> unsigned(4 * (i % 2)));
-  }
-  [[nodiscard]] std::uint8_t left(int i, int j) const {
-    const int px = x_ - 1 + i / 2, py = y_ - 1 + j / 2;
-    const CrossingRows& rows = i % 2 == 0 ? image_.crossings.left : image_.crossings.mid_column;
-    return spread(std::uint32_t(rows.row(py)[px]) >> unsigned(4 * (j % 2)));
+  void add_pixel(int i, int j) {
+    const int px = x_ - 1 + i, py = y_ - 1 + j;
+    const Crossings& c = image_.crossings;
+    const PixelLines lines{c.upper.row(py)[px], c.mid_row.row(py)[px],    c.upper.row(py + 1)[px],
+                           c.left.row(py)[px],  c.mid_column.row(py)[px], c.left.row(py)[px + 1]};
+    const PointKey point = image_.points[image_.offset(px, py)];
+    const unsigned point_column = point.cell() % 4 / 2, point_row = point.cell() / 8;
+    const int bit = bit_of(2 * i, 2 * j);
+    if (!lines.any()) {
+      constexpr Word kAll = Word{3} | Word{3} << unsigned(kRow);
+      for (Word& corner : out_.primary) corner |= kAll << unsigned(bit);
+      for (const int at : {bit, bit + 1, bit + kRow, bit + kRow + 1}) set_primary(at, px, py);
+      if (!point.is_none()) set_sample(bit + bit_of(int(point_column), int(point_row)), px, py);
+      return;
+    }
+    for (unsigned k = 0; k < 4; ++k) {
+      const unsigned column = k % 2, row = k / 2;
+      PixelCode code(classify_boundary(lines.boundary(column, row)));
+      const bool has_point = !point.is_none() && point_column == column && point_row == row;
+      const RegionOf region = has_point ? region_of(code, point.cell()) : RegionOf::ambiguous;
+      if (code.is_simple()) {
+        code.set_primary(region == RegionOf::ambiguous ? tables_.area_a[code.edge()] > 0.5F
+                                                       : region == RegionOf::a);
+      }
+      const int at = bit + bit_of(int(column), int(row));
+      if (region != RegionOf::ambiguous) {
+        set_sample(at, px, py);
+      } else if (code.is_empty() && lies_in_primary(px, py, column, row)) {
+        set_primary(at, px, py);
+      }
+      if (i == 1 && j == 1) out_.middle[k] = code;
+      add_corners(code, at);
+    }
   }
 
-  void add(int i, int j) {
-    const int bit = bit_of(i, j);
-    const int px = x_ - 1 + i / 2, py = y_ - 1 + j / 2;
-    PixelCode code(classify_boundary(
-        boundary_mask({upper(i, j), left(i + 1, j), upper(i, j + 1), left(i, j)})));
-    const PointKey point = image_.points[image_.offset(px, py)];
-    const bool has_point =
-        !point.is_none() && int(point.cell() % 4 / 2) == i % 2 && int(point.cell() / 8) == j % 2;
-    const RegionOf region = has_point ? region_of(code, point.cell()) : RegionOf::ambiguous;
-    if (code.is_simple()) {
-      code.set_primary(region == RegionOf::ambiguous ? edge_tables().area_a[code.edge()] > 0.5F
-                                                     : region == RegionOf::a);
-    }
-    if (has_point && region != RegionOf::ambiguous) {
-      set_color(bit, samples_.row(py), px, 1);
-    } else if (!code.is_complex() && lies_in_primary(px, py, i, j, code)) {
-      const PrimaryRows& row = py < y_ ? around_.above : py > y_ ? around_.below : around_.here;
-      if (row.weight[px] > 0) set_color(bit, row.color, px, std::min(row.weight[px], 1.0F));
-    }
-    out_.edge[std::size_t(bit)] = std::uint16_t(code.edge());
-    out_.primary_is_a[std::size_t(bit)] = code.primary_is_a();
+  void add_corners(PixelCode code, int bit) {
     if (code.is_complex()) return;
     std::uint32_t in_primary = 15;
     if (code.is_simple()) {
-      in_primary = edge_tables().corners_a[code.edge()] ^ (code.primary_is_a() ? 0U : 15U);
+      in_primary = tables_.corners_a[code.edge()] ^ (code.primary_is_a() ? 0U : 15U);
     }
     for (unsigned k = 0; k < 4; ++k) {
       const Word is_primary = in_primary >> k & 1U;
@@ -106,36 +140,38 @@ class Builder {
     }
   }
 
+  void set_sample(int bit, int px, int py) { set_color(bit, samples_.row(py), px, 1); }
+  // As interpolated.
+  void set_primary(int bit, int px, int py) {
+    const PrimaryRows& row = py < y_ ? around_.above : py > y_ ? around_.below : around_.here;
+    if (row.weight[px] > 0) set_color(bit, row.color, px, std::min(row.weight[px], 1.0F));
+  }
   void set_color(int bit, ColorRow row, int px, float weight) {
     out_.known |= Word{1} << unsigned(bit);
     out_.color[std::size_t(bit)] = {row.r[px], row.g[px], row.b[px]};
     out_.weight[std::size_t(bit)] = weight;
   }
 
-  // Whether what is primary of a subpixel is part of what is primary of its pixel.
-  [[nodiscard]] bool lies_in_primary(int px, int py, int i, int j, PixelCode sub) const {
+  // Whether a subpixel that no edge crosses lies in its pixel's primary region.
+  [[nodiscard]] bool lies_in_primary(int px, int py, unsigned column, unsigned row) const {
     const PixelCode whole = image_.codes[image_.offset(px, py)];
-    if (whole.is_complex()) return false;
-    if (whole.is_empty()) return sub.is_empty();
-    if (!sub.is_empty()) return false;
-    const EdgeTables& tables = edge_tables();
-    const std::uint32_t first = 8U * unsigned(j % 2) + 2U * unsigned(i % 2);
+    if (!whole.is_simple()) return whole.is_empty();
+    const std::uint32_t first = 8 * row + 2 * column;
     const RegionOf primary = whole.primary_is_a() ? RegionOf::a : RegionOf::b;
     for (const std::uint32_t cell : {first, first + 1, first + 4, first + 5}) {
-      if (tables.region_of(whole.edge(), cell) != primary) return false;
+      if (tables_.region_of(whole.edge(), cell) != primary) return false;
     }
     return true;
   }
 
   // Of a point that lies in the subpixel, to a quarter of it: each quarter is four cells of the tables.
-  static RegionOf region_of(PixelCode code, std::uint32_t cell) {
+  [[nodiscard]] RegionOf region_of(PixelCode code, std::uint32_t cell) const {
     if (code.is_empty()) return RegionOf::b;
     if (code.is_complex()) return RegionOf::ambiguous;
     const std::uint32_t first = 8 * (cell / 4 % 2) + 2 * (cell % 2);
-    const EdgeTables& tables = edge_tables();
-    const RegionOf region = tables.region_of(code.edge(), first);
+    const RegionOf region = tables_.region_of(code.edge(), first);
     for (const std::uint32_t other : {first + 1, first + 4, first + 5}) {
-      if (tables.region_of(code.edge(), other) != region) return RegionOf::ambiguous;
+      if (tables_.region_of(code.edge(), other) != region) return RegionOf::ambiguous;
     }
     return region;
   }
@@ -144,6 +180,7 @@ class Builder {
   int x_, y_;
   ColorRows& samples_;
   const PrimaryNeighborhood& around_;
+  const EdgeTables& tables_ = edge_tables();
   Subpixels out_;
 };
 
@@ -198,24 +235,22 @@ Rgb reconstruct_complex_pixel(const EdgePointImage& image, int x, int y, ColorRo
   const Subpixels s = Builder(image, x, y, samples, around).build();
   const Matrices matrices = find_matrices(s);
   Rgb sum;
-  for (int j = 2; j < 4; ++j) {
-    for (int i = 2; i < 4; ++i) {
-      const int bit = bit_of(i, j);
-      const std::uint32_t edge = s.edge[std::size_t(bit)];
-      if (edge == kComplexEdge) {
-        sum += fallback;
-        continue;
-      }
-      const Rgb primary = region_color(s, matrices, bit, true).value_or(fallback);
-      if (edge == kEmptyEdge) {
-        sum += primary;
-        continue;
-      }
-      const Rgb secondary = region_color(s, matrices, bit, false).value_or(fallback);
-      const float area_a = edge_tables().area_a[edge];
-      const float area = s.primary_is_a[std::size_t(bit)] ? area_a : 1 - area_a;
-      sum += primary * area + secondary * (1 - area);
+  for (int k = 0; k < 4; ++k) {
+    const int bit = bit_of(2 + k % 2, 2 + k / 2);
+    const PixelCode code = s.middle[std::size_t(k)];
+    if (code.is_complex()) {
+      sum += fallback;
+      continue;
     }
+    const Rgb primary = region_color(s, matrices, bit, true).value_or(fallback);
+    if (code.is_empty()) {
+      sum += primary;
+      continue;
+    }
+    const Rgb secondary = region_color(s, matrices, bit, false).value_or(fallback);
+    const float area_a = edge_tables().area_a[code.edge()];
+    const float area = code.primary_is_a() ? area_a : 1 - area_a;
+    sum += primary * area + secondary * (1 - area);
   }
   return sum * 0.25F;
 }

@@ -3,7 +3,12 @@
 #include <algorithm>
 #include <bit>
 #include <cstdint>
+#include <functional>
 #include <limits>
+#include <vector>
+
+#include "edgepoint/color_rows.h"
+#include "edgepoint/point_rows.h"
 
 namespace arris {
 namespace {
@@ -11,7 +16,7 @@ namespace {
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
 // Sixty-four pixels with so few points say nothing.
-constexpr int kFewPoints = 3;
+constexpr std::uint32_t kFewPoints = 3;
 // An edge may lie deeper than the points that surround it by what a surface that is this steep gains over the width
 // of some pixels.
 constexpr float kPixelsDeep = 6;
@@ -27,19 +32,25 @@ DepthCells::DepthCells(int width, int height)
       around_(std::size_t(columns_ + 1) * std::size_t(rows_ + 1)) {}
 
 void DepthCells::fill_cells(std::span<const PointKey> points, int cell_row) {
-  Cell* const row = cells_.data() + std::size_t(cell_row) * std::size_t(columns_);
-  std::fill(row, row + columns_, Cell{kInfinity, 0, 0});
+  const std::size_t stride = std::size_t(columns_) * kSide + ColorRows::kMargin;
+  std::vector<std::uint32_t> nearest(stride, std::bit_cast<std::uint32_t>(kInfinity));
+  std::vector<std::uint32_t> farthest(stride), count(stride);
   const int last = std::min(height_, (cell_row + 1) * kSide);
   for (int y = cell_row * kSide; y < last; ++y) {
-    const PointKey* const keys = points.data() + std::size_t(y) * std::size_t(width_);
-    for (int x = 0; x < width_; ++x) {
-      if (keys[x].is_none()) continue;
-      Cell& cell = row[x / kSide];
-      const float depth = keys[x].depth();
-      cell.nearest = std::min(cell.nearest, depth);
-      cell.farthest = std::max(cell.farthest, depth);
-      ++cell.count;
-    }
+    add_depths(points.subspan(std::size_t(y) * std::size_t(width_), std::size_t(width_)),
+               {nearest.data(), farthest.data(), count.data()});
+  }
+  Cell* const row = cells_.data() + std::size_t(cell_row) * std::size_t(columns_);
+  for (std::size_t i = 0; i < std::size_t(columns_); ++i) {
+    const auto over = [&](const std::vector<std::uint32_t>& columns, const auto& combine) {
+      const std::uint32_t* const c = columns.data() + kSide * i;
+      return combine(combine(c[0], c[1]), combine(c[2], c[3]));
+    };
+    // Depths are positive floats, which compare like their bits.
+    const auto lower = [](std::uint32_t a, std::uint32_t b) { return std::min(a, b); };
+    const auto upper = [](std::uint32_t a, std::uint32_t b) { return std::max(a, b); };
+    row[i] = {std::bit_cast<float>(over(nearest, lower)),
+              std::bit_cast<float>(over(farthest, upper)), over(count, std::plus<std::uint32_t>())};
   }
 }
 
@@ -57,7 +68,7 @@ void DepthCells::fill_limits(int limit_row, float pixel_size) {
     }
     // Points spread over the window show all of its depths but for about one part in their number.
     const float spread =
-        (around.farthest - around.nearest) * (2.0F / float(std::max(around.count, 1)));
+        (around.farthest - around.nearest) * (2.0F / float(std::max(around.count, 1U)));
     const float limit = around.count < kFewPoints
                             ? kInfinity
                             : around.farthest + spread + around.farthest * pixel_size * kPixelsDeep;

@@ -9,6 +9,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -18,6 +19,8 @@ namespace arris {
 
 class DepthCells {
  public:
+  static constexpr int kSide = 4;  // of a cell, pixels
+
   DepthCells(int width, int height);
 
   void fill_cells(std::span<const PointKey> points, int cell_row);
@@ -33,10 +36,9 @@ class DepthCells {
   [[nodiscard]] static bool row_changes_at(int y) { return (y + kSide / 2) % kSide == 0; }
 
  private:
-  static constexpr int kSide = 4;  // pixels
   struct Cell {
     float nearest, farthest;
-    int count;
+    std::uint32_t count;
   };
 
   struct Around {

@@ -24,7 +24,10 @@ class PointKey {
  public:
   PointKey() = default;
   PointKey(std::uint32_t depth_bits, PointNumber point, std::uint32_t cell)
-      : bits_(std::uint64_t(depth_bits) << 32U | point << 4U | cell) {}
+      : PointKey(depth_bits, point << 4U | cell) {}
+  // place: the point's number and its subpixel position, together.
+  PointKey(std::uint32_t depth_bits, std::uint32_t place)
+      : bits_(std::uint64_t(depth_bits) << 32U | place) {}
 
   [[nodiscard]] bool is_none() const { return bits_ == kNoPoint; }
   [[nodiscard]] float depth() const;

@@ -20,19 +20,17 @@ constexpr double kAround = 2;
 
 struct Clip {
   double from = 0, to = 1;
-  // Keeps where start + t·change ≥ 0.
-  void keep(double start, double end) {
-    if (start >= 0 && end >= 0) return;
-    if (start < 0 && end < 0) {
-      to = -1;
-      return;
-    }
+  // Keeps where start + t·change ≥ 0; false if that is nowhere.
+  [[nodiscard]] bool keep(double start, double end) {
+    if (start >= 0 && end >= 0) return true;
+    if (start < 0 && end < 0) return false;
     const double t = start / (start - end);
     if (start < 0) {
       from = std::max(from, t);
     } else {
       to = std::min(to, t);
     }
+    return from < to;
   }
 };
 
@@ -147,13 +145,13 @@ ScreenEdge project_edge(const PixelView& view, const WorldEdge& edge) {
   const double near = kNear * std::max(a.z, b.z);
   if (!(near > 0)) return {};
   Clip clip;
-  clip.keep(a.z - near, b.z - near);
-  clip.keep(a.x + kAround * a.z, b.x + kAround * b.z);
-  clip.keep(a.y + kAround * a.z, b.y + kAround * b.z);
   const double right = view.width_px + kAround, bottom = view.height_px + kAround;
-  clip.keep(right * a.z - a.x, right * b.z - b.x);
-  clip.keep(bottom * a.z - a.y, bottom * b.z - b.y);
-  if (!(clip.from < clip.to)) return {};
+  const bool inside = clip.keep(a.z - near, b.z - near) &&
+                      clip.keep(a.x + kAround * a.z, b.x + kAround * b.z) &&
+                      clip.keep(a.y + kAround * a.z, b.y + kAround * b.z) &&
+                      clip.keep(right * a.z - a.x, right * b.z - b.x) &&
+                      clip.keep(bottom * a.z - a.y, bottom * b.z - b.y);
+  if (!inside) return {};
   const Vec3d p = clip.from == 0 ? a : a + (b - a) * clip.from;
   const Vec3d q = clip.to == 1 ? b : a + (b - a) * clip.to;
   return {on_grid(p.x / p.z), on_grid(p.y / p.z), float(1 / p.z),
@@ -176,12 +174,15 @@ ScreenEdge project_edge(const PixelView& view, const SoftEdge& edge) {
   return e;
 }
 
-void rasterize_edges(std::span<const ScreenEdge> edges, const DepthCells& depth, RowBand band,
-                     int width_px, int height_px, Crossings& crossings) {
+void clear_crossings(RowBand band, int height_px, Crossings& crossings) {
   clear(crossings.left, band.first, band.last);
   clear(crossings.mid_column, band.first, band.last);
   clear(crossings.mid_row, band.first, band.last);
   clear(crossings.upper, band.first, band.last == height_px ? height_px + 1 : band.last);
+}
+
+void rasterize_edges(std::span<const ScreenEdge> edges, const DepthCells& depth, RowBand band,
+                     int width_px, int height_px, Crossings& crossings) {
   for (const ScreenEdge& edge : edges) {
     const float lower = std::min(edge.y0, edge.y1), upper = std::max(edge.y0, edge.y1);
     const bool is_last = band.last == height_px;

@@ -43,7 +43,10 @@ ScreenEdge project_edge(const PixelView& view, const WorldEdge& edge);
 // from pixel to pixel, or so narrow that its outer edge stands for both.
 ScreenEdge project_edge(const PixelView& view, const SoftEdge& edge);
 
-// Clears and fills the crossings of a band's rows. Bands share nothing.
+// Of a band's rows. Bands share nothing.
+void clear_crossings(RowBand band, int height_px, Crossings& crossings);
+
+// Adds to the crossings of a band's rows.
 void rasterize_edges(std::span<const ScreenEdge> edges, const DepthCells& depth, RowBand band,
                      int width_px, int height_px, Crossings& crossings);
 

@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <iterator>
 #include <utility>
+#include <variant>
 
 #include "base/check.h"
 #include "base/parallel_for.h"
@@ -27,6 +29,9 @@ std::vector<RowBand> make_bands(int height) {
   return bands;
 }
 
+// Edges that are projected at a time.
+constexpr std::size_t kChunkEdges = 2048;
+
 class Stopwatch {
  public:
   // Milliseconds since the last call.
@@ -41,6 +46,15 @@ class Stopwatch {
   Clock::time_point last_ = Clock::now();
 };
 
+using EdgeChunk = std::variant<std::span<const WorldEdge>, std::span<const SoftEdge>>;
+
+template <class Edge>
+void add_chunks(std::span<const Edge> list, std::vector<EdgeChunk>& chunks) {
+  for (std::size_t at = 0; at < list.size(); at += kChunkEdges) {
+    chunks.emplace_back(list.subspan(at, std::min(kChunkEdges, list.size() - at)));
+  }
+}
+
 }  // namespace
 
 float pixel_size(const PixelView& view) {
@@ -53,38 +67,70 @@ FrameMaker::FrameMaker(int width_px, int height_px)
       wanted_(image_.codes.size(), 255),
       bands_(make_bands(height_px)) {}
 
-void FrameMaker::find_depth(const PixelView& view, int threads) {
-  parallel_for(std::size_t(depth_.cell_rows()), {.grain = 8, .threads = threads},
-               [&](std::size_t i) { depth_.fill_cells(image_.points, int(i)); });
+void FrameMaker::find_points(const PixelView& view, const PointCache& cache, int threads) {
+  static_assert(kBandRows % DepthCells::kSide == 0, "bands are of whole cells");
+  const std::vector<RowBand> block_rows = find_block_rows(view, cache, threads);
+  std::vector<std::vector<std::uint32_t>> seen(bands_.size());
+  parallel_for(bands_.size(), {.grain = 1, .threads = threads}, [&](std::size_t i) {
+    const RowBand band = bands_[i];
+    seen[i].resize(block_rows.size() + 1);
+    project_points(view, cache, block_rows, band, image_.points, seen[i]);
+    // While the band's points are in the processor's cache.
+    const int last = (band.last + DepthCells::kSide - 1) / DepthCells::kSide;
+    for (int row = band.first / DepthCells::kSide; row < last; ++row) {
+      depth_.fill_cells(image_.points, row);
+    }
+  });
+  seen_.assign(block_rows.size(), 0);
+  for (const std::vector<std::uint32_t>& of_band : seen) {
+    for (std::size_t i = 0; i < seen_.size(); ++i) seen_[i] += of_band[i];
+  }
   const float size = pixel_size(view);
   parallel_for(std::size_t(depth_.limit_rows()), {.grain = 16, .threads = threads},
                [&](std::size_t i) { depth_.fill_limits(int(i), size); });
 }
 
+// Chunks of edges are projected and handed to the bands that they cross; those that are not in the picture to none.
 void FrameMaker::rasterize(const PixelView& view, const FrameEdges& edges, int threads) {
-  const std::size_t surfaces = edges.surfaces.size();
-  screen_edges_.resize(surfaces + edges.shadows.size());
-  parallel_for(screen_edges_.size(), {.grain = 1024, .threads = threads}, [&](std::size_t i) {
-    screen_edges_[i] = i < surfaces ? project_edge(view, edges.surfaces[i])
-                                    : project_edge(view, edges.shadows[i - surfaces]);
+  std::vector<EdgeChunk> chunks;
+  for (const std::span<const WorldEdge> list : edges.surfaces) add_chunks(list, chunks);
+  add_chunks(edges.shadows, chunks);
+  const std::size_t bands = bands_.size();
+  if (screen_edges_.size() < chunks.size() * bands) screen_edges_.resize(chunks.size() * bands);
+  parallel_for(chunks.size(), {.grain = 1, .threads = threads}, [&](std::size_t c) {
+    const std::span of_bands = std::span(screen_edges_).subspan(c * bands, bands);
+    for (std::vector<ScreenEdge>& list : of_bands) list.clear();
+    const auto hand_out = [&](const ScreenEdge& edge) {
+      if (edge.x0 == edge.x1 && edge.y0 == edge.y1) return;
+      const auto [upper, lower] = std::minmax(edge.y0, edge.y1);
+      // Each band has the line between it and the next.
+      const int first = std::max(int(std::floor(upper)) - 1, 0) / kBandRows;
+      const int last = std::min(int(std::floor(lower)) + 1, image_.height_px - 1) / kBandRows;
+      for (int b = first; b <= last; ++b) of_bands[std::size_t(b)].push_back(edge);
+    };
+    std::visit(
+        [&](const auto& chunk) {
+          for (const auto& edge : chunk) hand_out(project_edge(view, edge));
+        },
+        chunks[c]);
   });
-  std::erase_if(screen_edges_, [](const ScreenEdge& e) { return e.x0 == e.x1 && e.y0 == e.y1; });
-  parallel_for(bands_.size(), {.grain = 1, .threads = threads}, [&](std::size_t i) {
-    rasterize_edges(screen_edges_, depth_, bands_[i], image_.width_px, image_.height_px,
-                    image_.crossings);
+  parallel_for(bands, {.grain = 1, .threads = threads}, [&](std::size_t b) {
+    clear_crossings(bands_[b], image_.height_px, image_.crossings);
+    for (std::size_t c = 0; c < chunks.size(); ++c) {
+      rasterize_edges(screen_edges_[c * bands + b], depth_, bands_[b], image_.width_px,
+                      image_.height_px, image_.crossings);
+    }
   });
 }
 
-FrameReport FrameMaker::make(const PixelView& view, const FrameEdges& edges,
-                             PointCache& cache, const FrameSettings& settings, Image& picture) {
+FrameReport FrameMaker::make(const PixelView& view, const FrameEdges& edges, PointCache& cache,
+                             const FrameSettings& settings, Image& picture) {
   ARRIS_CHECK(view.width_px == image_.width_px && view.height_px == image_.height_px,
               double(view.width_px), double(view.height_px));
   FrameReport report;
   const ParallelOptions parallel{.grain = 1, .threads = settings.threads};
   Stopwatch watch;
-  parallel_for(bands_.size(), parallel,
-               [&](std::size_t i) { project_points(view, cache, bands_[i], image_.points); });
-  find_depth(view, settings.threads);
+  find_points(view, cache, settings.threads);
   report.times.points = watch.lap();
   rasterize(view, edges, settings.threads);
   report.times.raster = watch.lap();
@@ -102,6 +148,7 @@ FrameReport FrameMaker::make(const PixelView& view, const FrameEdges& edges,
     hidden[i] = find_hidden_points(image_, depth_, bands_[i], pixel_size(view));
   });
   for (const std::vector<std::uint32_t>& pixels : hidden) {
+    for (const std::uint32_t pixel : pixels) --seen_[image_.points[pixel].point() / kPointBlock];
     remove_points(pixels, image_);
     report.hidden += pixels.size();
   }
@@ -112,16 +159,15 @@ FrameReport FrameMaker::make(const PixelView& view, const FrameEdges& edges,
   parallel_for(bands_.size(), parallel, [&](std::size_t i) {
     reports[i] = reconstruct_band(image_, cache, reconstruction, bands_[i], picture, wanted_);
   });
-  std::vector<std::uint32_t> unresolved, seen(cache.blocks().size());
+  std::vector<std::uint32_t> unresolved;
   ReconstructionTimes spent;
   for (const BandReport& band : reports) {
     std::copy(band.unresolved.begin(), band.unresolved.end(), std::back_inserter(unresolved));
-    for (std::size_t i = 0; i < seen.size(); ++i) seen[i] += band.seen[i];
     spent += band.times;
   }
-  cache.set_seen(seen);
+  cache.set_seen(seen_);
   report.unresolved = unresolved.size();
-  fill_holes(image_, std::move(unresolved), picture);
+  fill_holes(image_, unresolved, settings.threads, picture);
   const double took = watch.lap();
   const double part = spent.total() > 0 ? took / spent.total() : 0;
   report.times.interpolation = part * spent.interpolation;

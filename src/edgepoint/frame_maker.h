@@ -41,7 +41,7 @@ struct FrameSettings {
 };
 
 struct FrameEdges {
-  std::span<const WorldEdge> surfaces;
+  std::span<const std::span<const WorldEdge>> surfaces;
   std::span<const SoftEdge> shadows;
 };
 
@@ -58,13 +58,14 @@ class FrameMaker {
   [[nodiscard]] std::span<const std::uint8_t> wanted() const { return wanted_; }
 
  private:
-  void find_depth(const PixelView& view, int threads);
+  void find_points(const PixelView& view, const PointCache& cache, int threads);
   void rasterize(const PixelView& view, const FrameEdges& edges, int threads);
 
   EdgePointImage image_;
   DepthCells depth_;
-  std::vector<ScreenEdge> screen_edges_;
+  std::vector<std::vector<ScreenEdge>> screen_edges_;  // by chunk and band
   std::vector<std::uint8_t> wanted_;
+  std::vector<std::uint32_t> seen_;  // of the points of each block
   std::vector<RowBand> bands_;
 };
 

@@ -25,8 +25,8 @@ namespace arris {
 
 // A neighbour within reach: which of 64 pixels it has a sample for, and the inverse depths there.
 struct DepthTap {
-  std::uint64_t pixels = 0;
-  const float* inverse = nullptr;
+  std::uint64_t pixels;
+  const float* inverse;
 };
 struct DepthTaps {
   std::array<DepthTap, 24> taps;
@@ -221,8 +221,9 @@ class HiddenFinder {
     }
   }
 
-  DepthTaps taps_of(int y, int word) {
-    DepthTaps taps;
+  const DepthTaps& taps_of(int y, int word) {
+    DepthTaps& taps = taps_;
+    taps.count = 0;
     const auto add = [&](int dx, int dy, std::uint64_t reached) {
       const std::uint64_t pixels = reached & shifted_word(image_.samples.row(y + dy), word, dx);
       if (pixels != 0)
@@ -245,6 +246,7 @@ class HiddenFinder {
   std::vector<float> rows_;
   std::vector<float> nearest_;  // around each pixel of the row
   std::vector<std::uint32_t> hidden_;
+  DepthTaps taps_;
 };
 
 }  // namespace

@@ -1,10 +1,15 @@
 #include "edgepoint/hole_filler.h"
 
+#include <algorithm>
+#include <bit>
 #include <cstddef>
-#include <utility>
+#include <span>
 #include <vector>
 
 #include "arris/math.h"
+#include "base/parallel_for.h"
+#include "edgepoint/bit_plane.h"
+#include "edgepoint/shifted_word.h"
 
 namespace arris {
 namespace {
@@ -14,44 +19,71 @@ struct Cell {
   float count = 0;
 };
 
-struct Grid {
-  int width, height;
-  std::vector<Cell> cells;
-
-  Grid(int w, int h) : width(w), height(h), cells(std::size_t(w) * std::size_t(h)) {}
-  [[nodiscard]] Cell& at(int x, int y) {
-    return cells[std::size_t(y) * std::size_t(width) + std::size_t(x)];
-  }
-};
-
 constexpr int kFirstCell = 8;  // pixels
 
-Grid make_first_grid(const Image& picture, const std::vector<bool>& is_hole) {
-  Grid grid((picture.width_px + kFirstCell - 1) / kFirstCell,
-            (picture.height_px + kFirstCell - 1) / kFirstCell);
-  for (int y = 0; y < picture.height_px; ++y) {
-    for (int x = 0; x < picture.width_px; ++x) {
-      const std::size_t at = picture.offset(x, y);
-      if (is_hole[at / 3]) continue;
-      Cell& cell = grid.at(x / kFirstCell, y / kFirstCell);
-      cell.sum += Rgb{picture.values[at], picture.values[at + 1], picture.values[at + 2]};
-      ++cell.count;
+// Means over cells of the picture, of 8 × 8 pixels and of ever twice as many, made where they are asked for.
+class Grids {
+ public:
+  Grids(const Image& picture, const BitPlane& holes) : picture_(picture), holes_(holes) {
+    int width = (picture.width_px + kFirstCell - 1) / kFirstCell;
+    int height = (picture.height_px + kFirstCell - 1) / kFirstCell;
+    levels_.emplace_back(width, height);
+    while (width > 1 || height > 1) {
+      width = (width + 1) / 2;
+      height = (height + 1) / 2;
+      levels_.emplace_back(width, height);
     }
   }
-  return grid;
-}
 
-Grid make_coarser(Grid& fine) {
-  Grid coarse((fine.width + 1) / 2, (fine.height + 1) / 2);
-  for (int y = 0; y < fine.height; ++y) {
-    for (int x = 0; x < fine.width; ++x) {
-      Cell& cell = coarse.at(x / 2, y / 2);
-      cell.sum += fine.at(x, y).sum;
-      cell.count += fine.at(x, y).count;
-    }
+  [[nodiscard]] std::size_t levels() const { return levels_.size(); }
+  const Cell& at(std::size_t level, int x, int y) {
+    Level& l = levels_[level];
+    Cell& cell = l.cells[std::size_t(y) * std::size_t(l.width) + std::size_t(x)];
+    if (cell.count == kUnknown) cell = level == 0 ? of_pixels(x, y) : of_cells(level - 1, x, y);
+    return cell;
   }
-  return coarse;
-}
+
+ private:
+  static constexpr float kUnknown = -1;
+  struct Level {
+    int width, height;
+    std::vector<Cell> cells;
+
+    Level(int w, int h)
+        : width(w), height(h), cells(std::size_t(w) * std::size_t(h), Cell{{}, kUnknown}) {}
+  };
+
+  [[nodiscard]] Cell of_pixels(int cell_x, int cell_y) const {
+    Cell cell;
+    const int x0 = cell_x * kFirstCell, y0 = cell_y * kFirstCell;
+    for (int y = y0; y < std::min(y0 + kFirstCell, picture_.height_px); ++y) {
+      for (int x = x0; x < std::min(x0 + kFirstCell, picture_.width_px); ++x) {
+        if (holes_.at(x, y)) continue;
+        const std::size_t at = picture_.offset(x, y);
+        cell.sum += Rgb{picture_.values[at], picture_.values[at + 1], picture_.values[at + 2]};
+        ++cell.count;
+      }
+    }
+    return cell;
+  }
+
+  Cell of_cells(std::size_t level, int cell_x, int cell_y) {
+    Cell cell;
+    const int x0 = 2 * cell_x, y0 = 2 * cell_y;
+    for (int y = y0; y < std::min(y0 + 2, levels_[level].height); ++y) {
+      for (int x = x0; x < std::min(x0 + 2, levels_[level].width); ++x) {
+        const Cell& part = at(level, x, y);
+        cell.sum += part.sum;
+        cell.count += part.count;
+      }
+    }
+    return cell;
+  }
+
+  const Image& picture_;
+  const BitPlane& holes_;
+  std::vector<Level> levels_;
+};
 
 // Steps of up to two pixels each.
 constexpr int kSteps = 8;
@@ -63,16 +95,57 @@ void set_color(Image& picture, std::uint32_t pixel, Rgb color) {
   out[2] = color.z;
 }
 
-// Colours of pixels around one that no edge parts from it, but not of such as edges cross: those are mixtures.
-Cell collect_reached(const EdgePointImage& image, const std::vector<bool>& is_hole,
-                     const Image& picture, std::uint32_t pixel) {
-  const int x = int(pixel % std::uint32_t(image.width_px));
-  const int y = int(pixel / std::uint32_t(image.width_px));
+// Pixels without a colour, and those whose colour others may take: not such as edges cross, which are mixtures.
+struct HolePlanes {
+  BitPlane holes, usable;
+};
+
+void set_bit(BitPlane& plane, int x, int y, bool value) {
+  const std::uint64_t bit = std::uint64_t{1} << unsigned(x & 63);
+  std::uint64_t& word = plane.row(y)[x >> 6];
+  word = value ? word | bit : word & ~bit;
+}
+
+HolePlanes make_planes(const EdgePointImage& image, std::span<const std::uint32_t> holes) {
+  HolePlanes planes{BitPlane(image.width_px, image.height_px),
+                    BitPlane(image.width_px, image.height_px)};
+  const auto& corners = image.corners.primary;
+  for (int y = 0; y < image.height_px; ++y) {
+    // All corners of an empty pixel are of its primary region, and of no other pixel.
+    for (int word = 0; word < planes.usable.words(); ++word) {
+      planes.usable.row(y)[word] = corners[0].row(y)[word] & corners[1].row(y)[word] &
+                                   corners[2].row(y)[word] & corners[3].row(y)[word];
+    }
+  }
+  for (const std::uint32_t hole : holes) {
+    const int x = int(hole % std::uint32_t(image.width_px));
+    const int y = int(hole / std::uint32_t(image.width_px));
+    set_bit(planes.holes, x, y, true);
+    set_bit(planes.usable, x, y, false);
+  }
+  return planes;
+}
+
+// Of the holes of a word those that a usable colour reaches.
+std::uint64_t find_reached(const EdgePointImage& image, const HolePlanes& planes, int y, int word) {
+  std::uint64_t reached = 0;
+  for (std::size_t k = 0; k < kReachOffsets; ++k) {
+    const auto [dx, dy] = kReachOffset[k];
+    const BitPlane& reach = image.reach.planes[k];
+    reached |= reach.row(y)[word] & shifted_word(planes.usable.row(y + dy), word, dx);
+    reached |= shifted_word(reach.row(y - dy), word, -dx) &
+               shifted_word(planes.usable.row(y - dy), word, -dx);
+  }
+  return reached & planes.holes.row(y)[word];
+}
+
+// The mean of the usable colours that reach a hole.
+Rgb mean_reached(const EdgePointImage& image, const BitPlane& usable, const Image& picture, int x,
+                 int y) {
   Cell cell;
   const auto add = [&](int px, int py) {
-    const std::size_t at = image.offset(px, py);
-    if (is_hole[at] || !image.codes[at].is_empty()) return;
-    const float* const color = picture.values.data() + 3 * at;
+    if (!usable.at(px, py)) return;
+    const float* const color = picture.values.data() + 3 * image.offset(px, py);
     cell.sum += Rgb{color[0], color[1], color[2]};
     ++cell.count;
   };
@@ -83,43 +156,58 @@ Cell collect_reached(const EdgePointImage& image, const std::vector<bool>& is_ho
     const bool inside = x - dx >= 0 && x - dx < image.width_px && y - dy >= 0;
     if (inside && image.reach.at(k, x - dx, y - dy)) add(x - dx, y - dy);
   }
-  return cell;
+  return cell.sum * (1 / cell.count);
 }
 
+struct FilledHole {
+  int x;
+  Rgb color;
+};
+
 // Leaves those holes that nothing reaches.
-void spread_reached(const EdgePointImage& image, std::vector<std::uint32_t>& holes,
-                    std::vector<bool>& is_hole, Image& picture) {
-  for (int step = 0; step < kSteps && !holes.empty(); ++step) {
-    std::vector<std::pair<std::uint32_t, Rgb>> filled;
-    for (const std::uint32_t hole : holes) {
-      const Cell cell = collect_reached(image, is_hole, picture, hole);
-      if (cell.count > 0) filled.emplace_back(hole, cell.sum * (1 / cell.count));
+void spread_reached(const EdgePointImage& image, int threads, HolePlanes& planes, Image& picture) {
+  std::vector<std::vector<FilledHole>> filled(std::size_t(image.height_px));
+  for (int step = 0; step < kSteps; ++step) {
+    parallel_for(filled.size(), {.grain = 16, .threads = threads}, [&](std::size_t row) {
+      const int y = int(row);
+      filled[row].clear();
+      for (int word = 0; word < planes.holes.words(); ++word) {
+        if (planes.holes.row(y)[word] == 0) continue;
+        std::uint64_t reached = find_reached(image, planes, y, word);
+        for (; reached != 0; reached &= reached - 1) {
+          const int x = 64 * word + std::countr_zero(reached);
+          filled[row].push_back({x, mean_reached(image, planes.usable, picture, x, y)});
+        }
+      }
+    });
+    bool any = false;
+    for (int y = 0; y < image.height_px; ++y) {
+      for (const FilledHole& hole : filled[std::size_t(y)]) {
+        set_color(picture, std::uint32_t(image.offset(hole.x, y)), hole.color);
+        set_bit(planes.holes, hole.x, y, false);
+        set_bit(planes.usable, hole.x, y, image.codes[image.offset(hole.x, y)].is_empty());
+        any = true;
+      }
     }
-    if (filled.empty()) return;
-    for (const auto& [hole, color] : filled) {
-      set_color(picture, hole, color);
-      is_hole[hole] = false;
-    }
-    std::erase_if(holes, [&](std::uint32_t hole) { return !is_hole[hole]; });
+    if (!any) return;
   }
 }
 
 }  // namespace
 
-void fill_holes(const EdgePointImage& image, std::vector<std::uint32_t> holes, Image& picture) {
+void fill_holes(const EdgePointImage& image, std::span<const std::uint32_t> holes, int threads,
+                Image& picture) {
   if (holes.empty()) return;
-  std::vector<bool> is_hole(picture.values.size() / 3);
-  for (const std::uint32_t hole : holes) is_hole[hole] = true;
-  spread_reached(image, holes, is_hole, picture);
-  if (holes.empty()) return;
-  std::vector<Grid> grids{make_first_grid(picture, is_hole)};
-  while (grids.back().width > 1 || grids.back().height > 1)
-    grids.push_back(make_coarser(grids.back()));
+  HolePlanes planes = make_planes(image, holes);
+  spread_reached(image, threads, planes, picture);
+  Grids grids(picture, planes.holes);
   for (const std::uint32_t hole : holes) {
-    int x = int(hole % std::uint32_t(picture.width_px)) / kFirstCell;
-    int y = int(hole / std::uint32_t(picture.width_px)) / kFirstCell;
-    for (Grid& grid : grids) {
-      const Cell& cell = grid.at(x, y);
+    const int pixel_x = int(hole % std::uint32_t(picture.width_px));
+    const int pixel_y = int(hole / std::uint32_t(picture.width_px));
+    if (!planes.holes.at(pixel_x, pixel_y)) continue;
+    int x = pixel_x / kFirstCell, y = pixel_y / kFirstCell;
+    for (std::size_t level = 0; level < grids.levels(); ++level) {
+      const Cell& cell = grids.at(level, x, y);
       if (cell.count > 0) {
         set_color(picture, hole, cell.sum * (1 / cell.count));
         break;

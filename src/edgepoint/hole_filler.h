@@ -3,11 +3,11 @@
 //            view keeps its outline until its first samples; where there are none, the mean of the nearest pixels,
 //            found on ever coarser grids
 // Guarantee  colours cross no edge, but in regions in which nothing is known (tests/edgepoint/points_test.cpp)
-// Cost       nothing without holes; the grids one pass over the picture
+// Cost       nothing without holes; of the grids only what holes lie in
 #pragma once
 
 #include <cstdint>
-#include <vector>
+#include <span>
 
 #include "arris/image.h"
 #include "edgepoint/edge_point_image.h"
@@ -15,6 +15,7 @@
 namespace arris {
 
 // holes: offsets of pixels, each once.
-void fill_holes(const EdgePointImage& image, std::vector<std::uint32_t> holes, Image& picture);
+void fill_holes(const EdgePointImage& image, std::span<const std::uint32_t> holes, int threads,
+                Image& picture);
 
 }  // namespace arris

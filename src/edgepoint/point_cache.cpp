@@ -39,9 +39,8 @@ PointCache::PointCache(std::size_t capacity)
   x_.resize(places);
   y_.resize(places);
   z_.resize(places);
-  radiance_.resize(places);
+  looks_.resize(places);
   object_.resize(places);
-  born_.resize(places);
 }
 
 std::size_t PointCache::room_for(bool far, std::uint32_t frame) {
@@ -73,9 +72,8 @@ void PointCache::put(PointBlock& block, PointNumber number, const ShadedPoint& p
   x_[number] = point.position.x;
   y_[number] = point.position.y;
   z_[number] = point.position.z;
-  radiance_[number] = pack_radiance(point.radiance);
+  looks_[number] = {pack_radiance(point.radiance), std::uint16_t(frame), 0};
   object_[number] = point.object;
-  born_[number] = std::uint16_t(frame);
   const bool is_only = block.count == 1;
   block.lower = is_only ? point.position : min(block.lower, point.position);
   block.upper = is_only ? point.position : max(block.upper, point.position);
@@ -110,7 +108,7 @@ void PointCache::move(std::span<const std::optional<Affine3d>> to_from, std::uin
       x_[i] = p.x;
       y_[i] = p.y;
       z_[i] = p.z;
-      born_[i] = std::uint16_t(frame - kStaleAge);
+      looks_[i].born = std::uint16_t(frame - kStaleAge);
       block.lower = min(block.lower, p);
       block.upper = max(block.upper, p);
     }
@@ -128,7 +126,7 @@ std::size_t PointCache::size() const {
 }
 
 std::size_t PointCache::bytes() const {
-  return x_.size() * (3 * sizeof(float) + 2 * sizeof(std::uint32_t) + sizeof(std::uint16_t)) +
+  return x_.size() * (3 * sizeof(float) + sizeof(PointLook) + sizeof(std::uint32_t)) +
          blocks_.size() * sizeof(PointBlock);
 }
 

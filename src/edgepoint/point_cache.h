@@ -4,7 +4,7 @@
 //            part of the picture and reprojecting it touches little memory. When all blocks are full, the one of
 //            which least is seen makes room.
 // Guarantee  the same calls leave the same points in the same places
-// Cost       22 bytes a point
+// Cost       24 bytes a point
 // Source     Walter, Drettakis, Parker, "Interactive Rendering using the Render Cache" (1999), and its successor
 //            (2002); Bala, Walter, Greenberg (2003), §4.3. Theirs is one array in no order.
 #pragma once
@@ -46,6 +46,13 @@ inline Rgb unpack_radiance(std::uint32_t packed) {
   return Rgb{float(packed & 511U), float(packed >> 9U & 511U), float(packed >> 18U & 511U)} * scale;
 }
 
+// What a pixel takes of its point: together, as they are read in no order.
+struct PointLook {
+  std::uint32_t packed_radiance = 0;
+  std::uint16_t born = 0;  // the frame's number, modulo 2^16
+  std::uint16_t unused = 0;
+};
+
 inline constexpr std::uint32_t kPointBlock = 256;
 
 // What is known of kPointBlock consecutive points.
@@ -75,9 +82,7 @@ class PointCache {
   [[nodiscard]] const float* x() const { return x_.data(); }
   [[nodiscard]] const float* y() const { return y_.data(); }
   [[nodiscard]] const float* z() const { return z_.data(); }
-  [[nodiscard]] const std::uint32_t* packed_radiance() const { return radiance_.data(); }
-  // The frames' numbers, modulo 2^16.
-  [[nodiscard]] const std::uint16_t* born() const { return born_.data(); }
+  [[nodiscard]] std::span<const PointLook> looks() const { return looks_; }
 
   // How many points of each block were seen.
   void set_seen(std::span<const std::uint32_t> seen);
@@ -94,8 +99,8 @@ class PointCache {
   std::size_t most_blocks_;
   std::vector<PointBlock> blocks_;
   std::vector<float> x_, y_, z_;
-  std::vector<std::uint32_t> radiance_, object_;
-  std::vector<std::uint16_t> born_;
+  std::vector<PointLook> looks_;
+  std::vector<std::uint32_t> object_;
   std::array<std::size_t, 2> open_{};  // the block being filled: of near points, and of far ones
 };
 
@@ -109,7 +114,7 @@ void PointCache::make_old(std::uint32_t frame, const MayHold& may_hold, const Is
     if (block.is_far || block.count == 0 || !may_hold(block.lower, block.upper)) continue;
     const auto first = PointNumber(b * kPointBlock);
     for (PointNumber i = first; i < first + block.count; ++i) {
-      if (is_stale(position(i))) born_[i] = std::uint16_t(frame - kStaleAge);
+      if (is_stale(position(i))) looks_[i].born = std::uint16_t(frame - kStaleAge);
     }
   }
 }

@@ -6,6 +6,8 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "base/parallel_for.h"
+
 #undef HWY_TARGET_INCLUDE
 // NOLINTNEXTLINE(readability-identifier-naming)
 #define HWY_TARGET_INCLUDE "edgepoint/point_raster.cpp"
@@ -27,16 +29,21 @@ struct FloatView {
 // The points of a block.
 struct BlockPoints {
   const float *x, *y, *z;
+  std::uint32_t first;  // number
   std::uint32_t count;
   bool is_far;
 };
 
-// What becomes of them.
+// Those of them that fall into a band: where, and the halves of their keys. A vector more than there can be.
 struct BlockPixels {
-  alignas(64) std::array<std::int32_t, kPointBlock> pixel;  // negative: in none
-  alignas(64) std::array<std::uint32_t, kPointBlock> cell;
-  alignas(64) std::array<std::uint32_t, kPointBlock> depth_bits;
+  static constexpr std::size_t kRoom = kPointBlock + 64;
+  std::array<std::uint32_t, kRoom> pixel;
+  std::array<std::uint32_t, kRoom> place;
+  std::array<std::uint32_t, kRoom> depth_bits;
 };
+
+// Farther than everything else.
+inline constexpr std::uint32_t kFarDepthBits = 0x7f000000;
 
 }  // namespace arris
 #endif
@@ -47,8 +54,9 @@ namespace {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
-// All places of the block, also those beyond its count.
-void project_block(const FloatView& view, const BlockPoints& block, BlockPixels& out) {
+// Pixels are told apart by their number in the picture. Returns how many points there are.
+std::size_t project_block(const FloatView& view, const BlockPoints& block, RowBand band,
+                          BlockPixels& out) {
   const hn::ScalableTag<float> f;
   const hn::RebindToSigned<decltype(f)> s;
   const hn::RebindToUnsigned<decltype(f)> u;
@@ -60,7 +68,11 @@ void project_block(const FloatView& view, const BlockPoints& block, BlockPixels&
                       hn::MulAdd(hn::Set(f, m[1]), y, hn::Mul(hn::Set(f, m[2]), z)));
   };
   const auto one = hn::Set(f, 1.0F), four = hn::Set(f, 4.0F), zero = hn::Zero(f);
-  const auto width = hn::Set(f, view.width), height = hn::Set(f, view.height);
+  const auto width = hn::Set(f, view.width);
+  const auto top = hn::Set(f, float(band.first)), bottom = hn::Set(f, float(band.last));
+  const auto three = hn::Set(s, 3), pixels = hn::Set(s, std::int32_t(view.width));
+  const auto far = hn::Set(u, kFarDepthBits), all = hn::Set(u, block.count);
+  std::size_t found = 0;
   // Behind the eye, or so near to it that the division overflows.
   const auto least = hn::Set(f, 1e-30F);
   for (std::size_t i = 0; i < block.count; i += hn::Lanes(f)) {
@@ -71,21 +83,28 @@ void project_block(const FloatView& view, const BlockPoints& block, BlockPixels&
     const auto inverse = hn::Div(one, hn::Max(w, least));
     const auto px = hn::Mul(row(view.x, x, y, z), inverse);
     const auto py = hn::Mul(row(view.y, x, y, z), inverse);
+    const auto number = hn::Iota(u, std::uint32_t(i));
     const auto inside =
-        hn::And(hn::And(hn::Ge(px, zero), hn::Lt(px, width)),
-                hn::And(hn::And(hn::Ge(py, zero), hn::Lt(py, height)), hn::Gt(w, least)));
+        hn::And(hn::And(hn::And(hn::Ge(px, zero), hn::Lt(px, width)),
+                        hn::RebindMask(f, hn::Lt(number, all))),
+                hn::And(hn::And(hn::Ge(py, top), hn::Lt(py, bottom)), hn::Gt(w, least)));
+    if (hn::AllFalse(f, inside)) continue;
     // In quarters of pixels; what is outside is anything.
     const auto qx = hn::ConvertTo(s, hn::Mul(hn::Min(hn::Max(px, zero), width), four));
-    const auto qy = hn::ConvertTo(s, hn::Mul(hn::Min(hn::Max(py, zero), height), four));
-    const auto pixel = hn::Add(hn::Mul(hn::ShiftRight<2>(qy), hn::Set(s, std::int32_t(view.width))),
-                               hn::ShiftRight<2>(qx));
-    const auto three = hn::Set(s, 3);
+    const auto qy = hn::ConvertTo(s, hn::Mul(hn::Min(hn::Max(py, top), bottom), four));
+    const auto pixel = hn::Add(hn::Mul(hn::ShiftRight<2>(qy), pixels), hn::ShiftRight<2>(qx));
     const auto cell = hn::Add(hn::ShiftLeft<2>(hn::And(qy, three)), hn::And(qx, three));
-    hn::Store(hn::IfThenElse(hn::RebindMask(s, inside), pixel, hn::Set(s, -1)), s,
-              out.pixel.data() + i);
-    hn::Store(hn::BitCast(u, cell), u, out.cell.data() + i);
-    hn::Store(hn::BitCast(u, w), u, out.depth_bits.data() + i);
+    const auto place =
+        hn::Or(hn::ShiftLeft<4>(hn::Add(number, hn::Set(u, block.first))), hn::BitCast(u, cell));
+    const auto depth = block.is_far ? far : hn::BitCast(u, w);
+    // Compressed in a register: storing while compressing is slow on some processors.
+    const auto in = hn::RebindMask(u, inside);
+    hn::StoreU(hn::Compress(hn::BitCast(u, pixel), in), u, out.pixel.data() + found);
+    hn::StoreU(hn::Compress(place, in), u, out.place.data() + found);
+    hn::StoreU(hn::Compress(depth, in), u, out.depth_bits.data() + found);
+    found += hn::CountTrue(f, inside);
   }
+  return found;
 }
 
 }  // namespace
@@ -98,9 +117,6 @@ namespace {
 
 HWY_EXPORT(project_block);
 
-// Farther than everything else.
-constexpr std::uint32_t kFarDepthBits = 0x7f000000;
-
 FloatView make_float_view(const PixelView& view) {
   const Mat3d m = transpose(view.pixel_from_world);
   const auto floats = [](Vec3d v) {
@@ -110,50 +126,70 @@ FloatView make_float_view(const PixelView& view) {
           floats(view.eye), float(view.width_px), float(view.height_px)};
 }
 
-// Whether any of the block's points may fall into the band.
-bool may_touch(const PixelView& view, const PointBlock& block, RowBand band) {
+RowBand rows_of(const PixelView& view, const PointBlock& block) {
+  if (block.count == 0) return {};
+  const Mat3d& m = view.pixel_from_world;
   const Vec3d eye = block.is_far ? Vec3d() : view.eye;
+  const Vec3d lowest = m * (Vec3d(block.lower) - eye);
+  const Vec3d size = Vec3d(block.upper) - Vec3d(block.lower);
+  const Vec3d along[3] = {m.x * size.x, m.y * size.y, m.z * size.z};
   int above = 0, below = 0, left = 0, right = 0, behind = 0;
+  double first = view.height_px, last = 0;
   for (unsigned corner = 0; corner < 8; ++corner) {
-    const Vec3d p{(corner & 1U) != 0 ? block.upper.x : block.lower.x,
-                  (corner & 2U) != 0 ? block.upper.y : block.lower.y,
-                  (corner & 4U) != 0 ? block.upper.z : block.lower.z};
-    const Vec3d q = view.pixel_from_world * (p - eye);
+    Vec3d q = lowest;
+    for (unsigned k = 0; k < 3; ++k) {
+      if ((corner >> k & 1U) != 0) q += along[k];
+    }
     // A pixel around covers the rounding of floats.
-    above += q.y < (band.first - 1) * q.z ? 1 : 0;
-    below += q.y > (band.last + 1) * q.z ? 1 : 0;
+    above += q.y < -q.z ? 1 : 0;
+    below += q.y > (view.height_px + 1) * q.z ? 1 : 0;
     left += q.x < -q.z ? 1 : 0;
     right += q.x > (view.width_px + 1) * q.z ? 1 : 0;
-    behind += q.z < 0 ? 1 : 0;
+    behind += q.z <= 0 ? 1 : 0;
+    if (q.z > 0) {
+      first = std::min(first, q.y / q.z - 1);
+      last = std::max(last, q.y / q.z + 1);
+    }
   }
-  return above < 8 && below < 8 && left < 8 && right < 8 && behind < 8;
+  if (above == 8 || below == 8 || left == 8 || right == 8 || behind == 8) return {};
+  if (behind > 0) return {0, view.height_px};
+  return {int(std::max(first, 0.0)), int(std::min(last, double(view.height_px))) + 1};
 }
 
 }  // namespace
 
-void project_points(const PixelView& view, const PointCache& cache, RowBand band,
-                    std::span<PointKey> points) {
+std::vector<RowBand> find_block_rows(const PixelView& view, const PointCache& cache, int threads) {
+  const std::span<const PointBlock> blocks = cache.blocks();
+  std::vector<RowBand> rows(blocks.size());
+  parallel_for(blocks.size(), {.grain = 512, .threads = threads},
+               [&](std::size_t i) { rows[i] = rows_of(view, blocks[i]); });
+  return rows;
+}
+
+void project_points(const PixelView& view, const PointCache& cache,
+                    std::span<const RowBand> block_rows, RowBand band, std::span<PointKey> points,
+                    std::span<std::uint32_t> seen) {
   const FloatView floats = make_float_view(view);
-  const auto first = std::int32_t(band.first * view.width_px);
-  const auto last = std::int32_t(band.last * view.width_px);
-  std::fill(points.begin() + first, points.begin() + last, PointKey());
-  BlockPixels pixels;
-  std::uint32_t number = 0;
-  for (const PointBlock& block : cache.blocks()) {
-    if (block.count > 0 && may_touch(view, block, band)) {
-      const BlockPoints places{cache.x() + number, cache.y() + number, cache.z() + number,
-                               block.count, block.is_far};
-      HWY_DYNAMIC_DISPATCH(project_block)(floats, places, pixels);
-      for (std::uint32_t i = 0; i < block.count; ++i) {
-        const std::int32_t pixel = pixels.pixel[i];
-        if (pixel < first || pixel >= last) continue;
-        const std::uint32_t depth = block.is_far ? kFarDepthBits : pixels.depth_bits[i];
-        const PointKey key(depth, number + i, pixels.cell[i]);
-        PointKey& nearest = points[std::size_t(pixel)];
-        if (key < nearest) nearest = key;
-      }
+  std::fill(points.begin() + std::ptrdiff_t(band.first) * view.width_px,
+            points.begin() + std::ptrdiff_t(band.last) * view.width_px, PointKey());
+  BlockPixels found;
+  for (std::uint32_t b = 0; b < block_rows.size(); ++b) {
+    if (block_rows[b].first >= band.last || block_rows[b].last <= band.first) continue;
+    const PointBlock& block = cache.blocks()[b];
+    const std::uint32_t first = b * kPointBlock;
+    const BlockPoints places{cache.x() + first, cache.y() + first, cache.z() + first, first,
+                             block.count,       block.is_far};
+    const std::size_t count = HWY_DYNAMIC_DISPATCH(project_block)(floats, places, band, found);
+    for (std::size_t i = 0; i < count; ++i) {
+      PointKey& nearest = points[found.pixel[i]];
+      const PointKey key(found.depth_bits[i], found.place[i]), before = nearest;
+      // Which is nearer can't be guessed, so there is no branch; the count past the last block's is of no block.
+      const bool nearer = key < before;
+      nearest = nearer ? key : before;
+      seen[b] += nearer ? 1 : 0;
+      const std::size_t loser = nearer ? before.point() / kPointBlock : block_rows.size();
+      --seen[std::min(loser, block_rows.size())];
     }
-    number += kPointBlock;
   }
 }
 

@@ -6,7 +6,9 @@
 // Source     Bala, Walter, Greenberg (2003), §4.3
 #pragma once
 
+#include <cstdint>
 #include <span>
+#include <vector>
 
 #include "edgepoint/edge_point_image.h"
 #include "edgepoint/pixel_view.h"
@@ -14,8 +16,12 @@
 
 namespace arris {
 
-// Clears and fills the rows of a band. Bands share nothing.
-void project_points(const PixelView& view, const PointCache& cache, RowBand band,
-                    std::span<PointKey> points);
+// Rows of the picture that the points of each block may fall into.
+std::vector<RowBand> find_block_rows(const PixelView& view, const PointCache& cache, int threads);
+
+// Clears and fills the rows of a band. seen: of the points of each block, added to. Bands share nothing.
+void project_points(const PixelView& view, const PointCache& cache,
+                    std::span<const RowBand> block_rows, RowBand band, std::span<PointKey> points,
+                    std::span<std::uint32_t> seen);
 
 }  // namespace arris

@@ -9,6 +9,7 @@
 #define HWY_TARGET_INCLUDE "edgepoint/point_rows.cpp"
 #include <hwy/foreach_target.h>  // compiles this file once for each kind of processor
 
+#include <hwy/cache_control.h>
 #include <hwy/highway.h>
 
 #include "edgepoint/bit_lanes-inl.h"
@@ -17,19 +18,10 @@
 #define ARRIS_EDGEPOINT_POINT_ROWS_ONCE
 namespace arris {
 
-// Weights of interpolation are at most the kernel's sum, and 1 with a sample of the pixel's own.
-inline constexpr float kOwnWeight = 1;
 // What a pixel wants whose point shows what is no longer so.
 inline constexpr std::uint32_t kStaleWanted = 160;
 // Frames after which a point gets no older.
 inline constexpr std::uint32_t kOld = 254;
-
-// Of a cache's points.
-struct PointData {
-  const std::uint32_t* radiance;
-  const std::uint16_t* born;
-  std::uint32_t frame;
-};
 
 }  // namespace arris
 #endif
@@ -92,18 +84,18 @@ void widen(std::span<const PointKey> row, const DepthColumns& columns) {
   });
 }
 
-void fetch(std::span<const PointKey> row, const PointData& data, ColorRow colors,
-           std::uint8_t* wishes) {
-  for_keys(row, [&](std::size_t x, Integers low, Integers high) HWY_ATTR {
+// looks: of each pixel's point, or anything.
+void unpack(std::span<const PointKey> row, const PointLook* looks, std::uint32_t frame,
+            ColorRow colors, std::uint8_t* wishes) {
+  for_keys(row, [&](std::size_t x, Integers /*low*/, Integers high) HWY_ATTR {
     const Unsigned u;
     const PixelLanes f;
     const hn::RebindToSigned<PixelLanes> s;
     const hn::Rebind<std::uint8_t, PixelLanes> bytes;
     const auto some = hn::Ne(high, hn::Set(u, kNone));
-    // Where there is no point the first stands in.
-    const auto point = hn::IfThenElseZero(some, hn::ShiftRight<4>(low));
-    const auto packed =
-        hn::IfThenElseZero(some, hn::GatherIndex(u, data.radiance, hn::BitCast(s, point)));
+    Integers packed, born;
+    hn::LoadInterleaved2(u, reinterpret_cast<const std::uint32_t*>(looks + x), packed, born);
+    packed = hn::IfThenElseZero(some, packed);
     const auto nine = hn::Set(u, 511);
     // 2^(exponent − bias − bits), made from its bits, as in unpack_radiance().
     const auto exponent = hn::Add(hn::ShiftRight<27>(packed),
@@ -115,12 +107,7 @@ void fetch(std::span<const PointKey> row, const PointData& data, ColorRow colors
     hn::StoreU(channel(packed), f, colors.r + x);
     hn::StoreU(channel(hn::ShiftRight<9>(packed)), f, colors.g + x);
     hn::StoreU(channel(hn::ShiftRight<18>(packed)), f, colors.b + x);
-    // Frames are kept in sixteen bits, two in a word.
-    const auto pair = hn::GatherIndex(u, reinterpret_cast<const std::uint32_t*>(data.born),
-                                      hn::BitCast(s, hn::ShiftRight<1>(point)));
-    const auto odd = hn::Ne(hn::And(point, hn::Set(u, 1)), hn::Zero(u));
-    const auto born = hn::IfThenElse(odd, hn::ShiftRight<16>(pair), pair);
-    const auto age = hn::And(hn::Sub(hn::Set(u, data.frame), born), hn::Set(u, 0xffff));
+    const auto age = hn::And(hn::Sub(hn::Set(u, frame), born), hn::Set(u, 0xffff));
     const auto by_age = hn::Add(hn::ShiftRight<4>(hn::Min(age, hn::Set(u, kOld))), hn::Set(u, 1));
     const auto is_stale = hn::Gt(age, hn::Set(u, kStaleAge - 1U));
     const auto wish =
@@ -138,9 +125,8 @@ std::uint64_t wanted_of(const float* weight, const std::uint8_t* wishes, std::si
   std::uint64_t unknown = 0;
   for (std::size_t i = 0; i < count; i += hn::Lanes(f)) {
     const auto w = hn::LoadU(f, weight + i);
-    // The less is known of it, the more: 200 / (1 + 8 w).
-    const auto known =
-        hn::Add(hn::Set(f, 1.0F), hn::Mul(hn::Set(f, 8.0F), hn::Min(w, hn::Set(f, kOwnWeight))));
+    // The less is known of it, the more: 200 / (1 + 3 w).
+    const auto known = hn::MulAdd(hn::Set(f, 3.0F), w, hn::Set(f, 1.0F));
     const auto open = hn::ConvertTo(s, hn::Div(hn::Set(f, 200.0F), known));
     const auto wish = hn::PromoteTo(s, hn::LoadU(bytes, wishes + i));
     const auto none = hn::Not(hn::Gt(w, hn::Zero(f)));
@@ -168,7 +154,7 @@ namespace arris {
 HWY_EXPORT(occupied);
 HWY_EXPORT(inverse_depths);
 HWY_EXPORT(widen);
-HWY_EXPORT(fetch);
+HWY_EXPORT(unpack);
 HWY_EXPORT(wanted_of);
 
 std::uint64_t find_occupied(std::span<const PointKey> keys) {
@@ -183,10 +169,17 @@ void add_depths(std::span<const PointKey> row, const DepthColumns& columns) {
   HWY_DYNAMIC_DISPATCH(widen)(row, columns);
 }
 
-void fetch_points(std::span<const PointKey> row, const PointCache& cache, std::uint32_t frame,
+void fetch_points(std::span<const PointKey> row, std::span<const PointKey> next,
+                  const PointCache& cache, std::uint32_t frame, std::span<PointLook> looks,
                   ColorRow colors, std::uint8_t* wishes) {
-  HWY_DYNAMIC_DISPATCH(fetch)
-  (row, {cache.packed_radiance(), cache.born(), frame}, colors, wishes);
+  const std::span<const PointLook> all = cache.looks();
+  if (all.empty()) return;
+  // Of no point the number is beyond all. Which pixels have one can't be guessed, so there is no branch.
+  const auto last = std::uint32_t(all.size() - 1);
+  const auto look_of = [&](PointKey key) { return all.data() + std::min(key.point(), last); };
+  for (const PointKey key : next) hwy::Prefetch(look_of(key));
+  for (std::size_t x = 0; x < row.size(); ++x) looks[x] = *look_of(row[x]);
+  HWY_DYNAMIC_DISPATCH(unpack)(row, looks.data(), frame, colors, wishes);
 }
 
 void find_wanted(std::span<std::uint8_t> wanted, const float* weight, const std::uint8_t* wishes,

@@ -1,5 +1,5 @@
 // point_rows.h — what is read of the points of a row of the edge-and-point image, in vectors of pixels
-// Cost       one pass over the row each; colours and ages are gathered
+// Cost       one pass over the row each; but colours and ages lie in no order
 #pragma once
 
 #include <cstddef>
@@ -26,8 +26,10 @@ struct DepthColumns {
 void add_depths(std::span<const PointKey> row, const DepthColumns& columns);
 
 // Colours of a row's points; black where there are none. wishes: how much a pixel with a point wants a new one, small,
-// the older the more; 0 without a point. Both have ColorRows::kMargin beyond the row's end.
-void fetch_points(std::span<const PointKey> row, const PointCache& cache, std::uint32_t frame,
+// the older the more; 0 without a point. next: the row that will be
+// asked for next, whose points are loaded meanwhile. looks: room for the row's. All have ColorRows::kMargin beyond its end.
+void fetch_points(std::span<const PointKey> row, std::span<const PointKey> next,
+                  const PointCache& cache, std::uint32_t frame, std::span<PointLook> looks,
                   ColorRow colors, std::uint8_t* wishes);
 
 // How much pixels want a new sample: what their points wish, or the more the less is known (weight, of interpolation):

@@ -33,9 +33,8 @@ class Band {
         samples_(kSampleRows, width_),
         primary_(kPrimaryRows, width_),
         weights_(std::size_t(kPrimaryRows) * weight_stride()),
-        wishes_(std::size_t(kSampleRows) * weight_stride()) {
-    report_.seen.assign(cache.blocks().size(), 0);
-  }
+        wishes_(std::size_t(kSampleRows) * weight_stride()),
+        looks_(weight_stride()) {}
 
   BandReport run() {
     const int first = std::max(band_.first - 1, 0),
@@ -65,12 +64,11 @@ class Band {
   void fetch(int y) {
     // Beyond the picture nothing has a sample.
     if (y < 0 || y >= image_.height_px) return;
-    const std::span row(image_.points.data() + image_.offset(0, y), std::size_t(width_));
-    fetch_points(row, cache_, settings_.frame, samples_.row(y), wish_row(y));
-    if (y < band_.first || y >= band_.last) return;
-    for (const PointKey key : row) {
-      if (!key.is_none()) ++report_.seen[key.point() / kPointBlock];
-    }
+    const auto row_at = [&](int at) {
+      return std::span(image_.points).subspan(image_.offset(0, at), std::size_t(width_));
+    };
+    fetch_points(row_at(y), row_at(std::min(y + 1, image_.height_px - 1)), cache_, settings_.frame,
+                 looks_, samples_.row(y), wish_row(y));
   }
 
   // Row y, when its neighbours are interpolated.
@@ -139,6 +137,7 @@ class Band {
   ColorRows samples_, primary_;
   std::vector<float> weights_;
   std::vector<std::uint8_t> wishes_;
+  std::vector<PointLook> looks_;
   BandReport report_;
   Clock::time_point last_lap_ = Clock::now();
 };

@@ -37,7 +37,6 @@ struct ReconstructionTimes {
 
 // What one band hands on besides its rows.
 struct BandReport {
-  std::vector<std::uint32_t> seen;        // of the points of each block
   std::vector<std::uint32_t> unresolved;  // pixels that no sample reaches, by offset
   ReconstructionTimes times;
 };

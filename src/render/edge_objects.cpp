@@ -262,8 +262,9 @@ std::vector<EdgeObjects::RoundedEdge> EdgeObjects::find_rounded(const PreparedSc
   return out;
 }
 
-std::vector<WorldEdge> EdgeObjects::find_edges(const PreparedScene& prepared, const PixelView& view,
-                                               int threads, EdgeTotals& totals) const {
+std::vector<std::vector<WorldEdge>> EdgeObjects::find_edges(const PreparedScene& prepared,
+                                                            const PixelView& view, int threads,
+                                                            EdgeTotals& totals) const {
   struct Found {
     std::vector<WorldEdge> edges;
     std::uint64_t sharp = 0;
@@ -309,13 +310,13 @@ std::vector<WorldEdge> EdgeObjects::find_edges(const PreparedScene& prepared, co
     }
     if (rounding != nullptr) find_rounded_outline(*rounding, rounded_view, found[i].edges);
   });
-  std::vector<WorldEdge> edges;
-  for (const Found& f : found) {
-    edges.insert(edges.end(), f.edges.begin(), f.edges.end());
+  std::vector<std::vector<WorldEdge>> edges(1);
+  for (Found& f : found) {
     totals.sharp += f.sharp;
     totals.silhouette += f.edges.size() - f.sharp;
+    if (!f.edges.empty()) edges.push_back(std::move(f.edges));
   }
-  add_light_outlines(scene, view.eye, edges, totals);
+  add_light_outlines(scene, view.eye, edges.front(), totals);
   return edges;
 }
 

@@ -39,9 +39,11 @@ class EdgeObjects {
   EdgeObjects(const PreparedScene& prepared, int threads);
   ~EdgeObjects();
 
-  // In the world. The scene is the one this was made of, or one whose objects, camera and lights have moved since.
-  std::vector<WorldEdge> find_edges(const PreparedScene& prepared, const PixelView& view,
-                                    int threads, EdgeTotals& totals) const;
+  // In the world, in lists: those of lights, then each object's. The scene is the one this was made of, or one whose
+  // objects, camera and lights have moved since.
+  std::vector<std::vector<WorldEdge>> find_edges(const PreparedScene& prepared,
+                                                 const PixelView& view, int threads,
+                                                 EdgeTotals& totals) const;
   // What shadows need of an object; nothing if it is no mesh. Valid while both are.
   struct Parts {
     const EdgeMesh* mesh = nullptr;

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <memory>
 #include <optional>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -121,8 +122,9 @@ class EdgePointEngine::Impl {
   void make_frame(const PixelView& view) {
     const Clock::time_point start = Clock::now();
     EdgeTotals totals;
-    std::vector<WorldEdge> edges;
-    if (settings_.use_edges) edges = objects_.find_edges(*scene_, view, settings_.threads, totals);
+    std::vector<std::vector<WorldEdge>> found;
+    if (settings_.use_edges) found = objects_.find_edges(*scene_, view, settings_.threads, totals);
+    std::vector<std::span<const WorldEdge>> edges(found.begin(), found.end());
     if (settings_.use_edges && settings_.shadow_edges) {
       shadows_.update(*scene_, objects_, kShadowEvents);
       totals.shadow = shadows_.edges().size();

@@ -63,6 +63,23 @@ TEST(EdgeCode, two_crossings_on_two_sides_are_simple) {
   EXPECT_EQ(classify_boundary(1U | 1U << 9U | 1U << 18U), kComplexEdge);
 }
 
+// Every pair of crossings, each doubled or not, in segments beside each other.
+TEST(EdgeCode, edges_side_by_side_are_one) {
+  for (std::uint32_t i = 0; i < 31; ++i) {
+    for (std::uint32_t j = i + 1; j < 32; ++j) {
+      if (i / 8 == j / 8) continue;
+      const std::uint32_t one = classify_boundary(1U << i | 1U << j);
+      const std::uint32_t doubled = 1U << i | 2U << i | 1U << j;
+      if (i % 8 < 7) EXPECT_EQ(classify_boundary(doubled), one);
+      if (i % 8 < 7 && j % 8 < 7) EXPECT_EQ(classify_boundary(doubled | 2U << j), one);
+      // Sides end at corners; three segments and gaps are two edges.
+      if (i % 8 == 7 && j > i + 2) EXPECT_EQ(classify_boundary(doubled), kComplexEdge);
+      if (i % 8 < 6) EXPECT_EQ(classify_boundary(doubled | 4U << i), kComplexEdge);
+      if (i % 8 < 6) EXPECT_EQ(classify_boundary((doubled ^ 2U << i) | 4U << i), kComplexEdge);
+    }
+  }
+}
+
 TEST(EdgeCode, areas_and_corners_are_those_of_the_edge) {
   const EdgeTables& tables = edge_tables();
   for_codes([&](std::uint32_t first, std::uint32_t last) {

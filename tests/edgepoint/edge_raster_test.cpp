@@ -27,6 +27,7 @@ Crossings rasterize(const std::vector<ScreenEdge>& edges, int bands) {
   Crossings crossings(kWidth, kHeight);
   for (int b = 0; b < bands; ++b) {
     const RowBand band{kHeight * b / bands, kHeight * (b + 1) / bands};
+    clear_crossings(band, kHeight, crossings);
     rasterize_edges(edges, depth, band, kWidth, kHeight, crossings);
   }
   return crossings;
@@ -182,6 +183,33 @@ TEST(EdgeRaster, edges_behind_the_eye_are_cut_off) {
   EXPECT_EQ(beside.x0, beside.x1);
 }
 
+TEST(EdgeRaster, edges_of_wide_penumbras_and_inner_ones_of_narrow_ones_are_left_out) {
+  PixelView view;
+  view.width_px = view.height_px = 100;
+  view.pixel_from_world = Mat3d{{50, 0, 0}, {0, 50, 0}, {50, 50, 1}};
+  // 50 pixels a unit; from x = 60 to 80 at y = 50, slanted by as many pixels as it is long.
+  const WorldEdge edge{{0.2F, 0, 1}, {0.6F, 0.4F, 1}};
+  const auto drawn = [&](Vec3f penumbra, bool is_umbra) {
+    const ScreenEdge e = project_edge(view, SoftEdge{edge, penumbra, is_umbra});
+    return e.x0 != e.x1;
+  };
+  // Across, in pixels: 50 · 0.7071 · √2 of the second argument.
+  const auto across = [](double pixels) {
+    const auto d = float(pixels / 50 / std::sqrt(2.0));
+    return Vec3f{d, -d, 0};
+  };
+  for (const bool is_umbra : {false, true}) {
+    EXPECT_TRUE(drawn({}, is_umbra));
+    EXPECT_TRUE(drawn(across(1.9), is_umbra));
+    EXPECT_TRUE(drawn(across(-1.9), is_umbra));
+    EXPECT_FALSE(drawn(across(2.1), is_umbra));
+    // Along the edge it has no width.
+    EXPECT_TRUE(drawn(across(1.5) + Vec3f{0.3F, 0.3F, 0}, is_umbra));
+    EXPECT_FALSE(drawn({0, 0, -2}, is_umbra));  // ends behind the eye
+    EXPECT_EQ(drawn(across(0.5), is_umbra), !is_umbra);
+  }
+}
+
 TEST(EdgeRaster, hidden_edges_leave_no_mark) {
   std::vector<PointKey> points(std::size_t(kWidth) * kHeight);
   for (std::size_t i = 0; i < points.size(); ++i) {
@@ -193,6 +221,7 @@ TEST(EdgeRaster, hidden_edges_leave_no_mark) {
   for (const float distance : {1.0F, 2.0F, 3.0F}) {
     const ScreenEdge edge{5, 5, 1 / distance, 60, 40, 1 / distance};
     Crossings crossings(kWidth, kHeight);
+    clear_crossings({0, kHeight}, kHeight, crossings);
     rasterize_edges({&edge, 1}, depth, {0, kHeight}, kWidth, kHeight, crossings);
     int count = 0;
     for (int y = 0; y < kHeight; ++y) {

@@ -87,7 +87,7 @@ TEST(PointCache, replaces_points_where_they_are_and_makes_room_when_full) {
   cache.add({&point, 1}, 40);
   EXPECT_EQ(cache.size(), full);
   EXPECT_EQ(cache.x()[3], point.position.x);
-  EXPECT_EQ(cache.born()[3], 40);
+  EXPECT_EQ(cache.looks()[3].born, 40);
 }
 
 TEST(PointCache, moves_the_points_of_an_object_only) {
@@ -106,7 +106,7 @@ TEST(PointCache, moves_the_points_of_an_object_only) {
       count += is_moved ? 1 : 0;
       if (!is_moved) continue;
       EXPECT_FLOAT_EQ(moved.z()[i], cache.z()[i] + 3);
-      EXPECT_EQ(std::uint16_t(5 - moved.born()[i]), kStaleAge);
+      EXPECT_EQ(std::uint16_t(5 - moved.looks()[i].born), kStaleAge);
       EXPECT_LE(moved.blocks()[b].lower.x, moved.x()[i]);
       EXPECT_GE(moved.blocks()[b].upper.x, moved.x()[i]);
     }
@@ -121,9 +121,11 @@ TEST(PointRaster, keeps_the_nearest_point_of_each_pixel) {
   PointCache cache(8000);
   cache.add(random_points(random, 6000), 0);
   std::vector<PointKey> points(std::size_t(kWidth) * kHeight), banded(points.size());
-  project_points(view, cache, {0, kHeight}, points);
+  const std::vector<RowBand> rows = find_block_rows(view, cache, 0);
+  std::vector<std::uint32_t> seen(rows.size() + 1), banded_seen(rows.size() + 1);
+  project_points(view, cache, rows, {0, kHeight}, points, seen);
   for (const RowBand band : {RowBand{0, 7}, RowBand{7, 30}, RowBand{30, kHeight}}) {
-    project_points(view, cache, band, banded);
+    project_points(view, cache, rows, band, banded, banded_seen);
   }
   std::vector<double> nearest(points.size(), INFINITY);
   int near_border = 0;
@@ -149,6 +151,8 @@ TEST(PointRaster, keeps_the_nearest_point_of_each_pixel) {
   for (std::size_t i = 0; i < points.size(); ++i) {
     EXPECT_FALSE(points[i] < banded[i] || banded[i] < points[i]);
     found += points[i].is_none() ? 0 : 1;
+    if (!points[i].is_none()) --seen[points[i].point() / kPointBlock];
+    if (!banded[i].is_none()) --banded_seen[banded[i].point() / kPointBlock];
     if (std::isinf(nearest[i])) continue;
     ASSERT_FALSE(points[i].is_none());
     if (nearest[i] > 1e20) continue;
@@ -157,6 +161,8 @@ TEST(PointRaster, keeps_the_nearest_point_of_each_pixel) {
   }
   EXPECT_GT(compared, 300);
   EXPECT_GE(compared + near_border + 200, found);
+  // Those of each block were counted.
+  for (std::size_t b = 0; b < rows.size(); ++b) EXPECT_TRUE(seen[b] == 0 && banded_seen[b] == 0);
 }
 
 // Depths of points by pixel; 0: none. No edges.
@@ -171,6 +177,7 @@ EdgePointImage image_of_depths(const std::vector<float>& depths,
   const std::vector<PointKey> none(image.points.size());
   for (int i = 0; i < depth.cell_rows(); ++i) depth.fill_cells(none, i);
   for (int i = 0; i < depth.limit_rows(); ++i) depth.fill_limits(i, 0.01F);
+  clear_crossings({0, kHeight}, kHeight, image.crossings);
   rasterize_edges(edges, depth, {0, kHeight}, kWidth, kHeight, image.crossings);
   classify_pixels({0, kHeight}, image);
   find_reach(image.corners, {0, kHeight}, image.reach);
@@ -286,7 +293,7 @@ TEST(Interpolate, takes_the_weighted_mean_of_what_is_reached) {
       const auto add = [&](int dx, int dy, bool reached) {
         const int px = x + dx, py = y + dy;
         if (px < 0 || py < 0 || px >= kWidth || py >= kHeight) return;
-        if (!image.samples.at(px, py)) return;
+        if (!(complex ? image.occupied : image.samples).at(px, py)) return;
         apart += reached || complex ? 0 : 1;
         if (!reached && !complex) return;
         sum += values[image.offset(px, py)] * kernel_weight(dx, dy);
@@ -324,9 +331,15 @@ TEST(ComplexPixel, mixes_the_colours_around_it) {
       row.b[x] = 0.25F;
     }
   }
+  // What is interpolated around it: the sides' own colours, or nothing.
+  const std::vector<float> known(kWidth, 1.0F), unknown(kWidth, 0.0F);
   for (int y = 5; y < 40; ++y) {
     ASSERT_TRUE(image.codes[image.offset(40, y)].is_complex());
-    const Rgb c = reconstruct_complex_pixel(image, 40, y, colors, {0.5F, 0.5F, 0.25F});
+    const std::vector<float>& weights = y % 2 == 0 ? known : unknown;
+    const PrimaryNeighborhood around{{colors.row(y - 1), weights.data()},
+                                     {colors.row(y), weights.data()},
+                                     {colors.row(y + 1), weights.data()}};
+    const Rgb c = reconstruct_complex_pixel(image, 40, y, colors, around, {0.5F, 0.5F, 0.25F});
     EXPECT_NEAR(c.x + c.y, 1, 1e-5);
     EXPECT_NEAR(c.z, 0.25F, 1e-6);
     // 0.3 of the left, 0.4 of the right, and the wire between, of which nothing is known.
@@ -350,7 +363,7 @@ TEST(HoleFiller, colours_cross_no_edge) {
       picture.at(x, y, 2) = 7;  // what no hole keeps
     }
   }
-  fill_holes(image, holes, picture);
+  fill_holes(image, holes, 0, picture);
   for (int y = 0; y < kHeight; ++y) {
     for (int x = 30; x <= 52; ++x) {
       EXPECT_EQ(picture.at(x, y, 2), 0);

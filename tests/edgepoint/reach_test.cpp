@@ -93,6 +93,7 @@ EdgePointImage random_image(int width, int height, std::uint32_t seed) {
   DepthCells depth(width, height);
   for (int i = 0; i < depth.cell_rows(); ++i) depth.fill_cells(image.points, i);
   for (int i = 0; i < depth.limit_rows(); ++i) depth.fill_limits(i, 0.01F);
+  clear_crossings({0, height}, height, image.crossings);
   rasterize_edges(edges, depth, {0, height}, width, height, image.crossings);
   classify_pixels({0, height}, image);
   return image;
@@ -144,6 +145,7 @@ TEST(Reach, a_line_parts_the_picture) {
     DepthCells depth(kSize, kSize);
     for (int r = 0; r < depth.cell_rows(); ++r) depth.fill_cells(image.points, r);
     for (int r = 0; r < depth.limit_rows(); ++r) depth.fill_limits(r, 0.01F);
+    clear_crossings({0, kSize}, kSize, image.crossings);
     rasterize_edges({&edge, 1}, depth, {0, kSize}, kSize, kSize, image.crossings);
     const PixelClasses classes = classify_pixels({0, kSize}, image);
     EXPECT_EQ(classes.complex, 0U);

@@ -284,6 +284,27 @@ TEST(ShadowEdges, penumbra_hardens_at_contact) {
   }
 }
 
+// A square light of side 1 at height 4 over a box whose top is at height 1: on the floor, all edges along the box's
+// sides have a penumbra of 1 · 1 / 3 across, and at contact none.
+TEST(ShadowEdges, penumbras_are_as_wide_as_the_light_makes_them) {
+  ShadowScene scene = scene_on_floor();
+  scene.add(make_box_mesh({1, 1, 1}), {{}, {0, 0, 0.5}});
+  const ParallelogramLight light{{-0.5, 1.5, 4}, {1, 0, 0}, {0, 1, 0}, {0, 0, -1}};
+  int along_x = 0;
+  for (const ShadowEdge& e : scene.shadow_edges(1, light)) {
+    if (e.receiver != 0) continue;
+    EXPECT_NEAR(e.penumbra.z, 0, 1e-5);
+    const Vec3d a(e.a), b(e.b);
+    if (length(b - a) < 1e-3 || std::abs(a.y - b.y) > 1e-6 || a.y > -0.51) continue;
+    ++along_x;  // thrown by the far side of the top
+    EXPECT_NEAR(std::abs(e.penumbra.y), 1.0 / 3, 1e-5);
+    // It leads to where the shadow's other edge is.
+    const double other = (a.y + double(e.penumbra.y));
+    EXPECT_NEAR(std::min(a.y, other), -0.5 - (2.5 + 0.5) / 3, 1e-5);
+  }
+  EXPECT_GE(along_x, 2);
+}
+
 TEST(ShadowEdges, a_light_throws_no_shadow_behind_itself) {
   ShadowScene scene = scene_on_floor();
   scene.add(make_box_mesh({1, 1, 1}), {{}, {0, 0, 1.5}});

@@ -70,7 +70,7 @@ TEST(StalePoints, are_those_behind_what_has_moved) {
       for (int s = 0; s <= 4000; ++s) {
         nearest = std::min(nearest, length(p + way * (s / 4000.0) - blocker.center));
       }
-      const bool is_stale = std::uint16_t(10 - cache.born()[i]) == kStaleAge;
+      const bool is_stale = std::uint16_t(10 - cache.looks()[i].born) == kStaleAge;
       stale += is_stale ? 1 : 0;
       if (std::abs(nearest - blocker.radius) < 0.02) continue;
       ASSERT_EQ(is_stale, nearest < blocker.radius) << i << " " << nearest;
