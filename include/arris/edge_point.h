@@ -36,6 +36,8 @@ struct EdgePointSettings {
   bool shadow_edges = true;  // of lights and the sun
   // Pixels with several edges are reconstructed at twice the resolution.
   bool complex_filter = true;
+  // Points keep light, and pixels multiply it by their own textures; false: points keep colours, as in the paper.
+  bool sharp_textures = true;
   bool synchronous = false;    // shading is done within next_frame()
   double first_density = 0.2;  // synchronous: of points before the first frame
   std::uint32_t seed = 0;

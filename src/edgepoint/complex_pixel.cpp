@@ -46,8 +46,8 @@ struct Subpixels {
 
 class Builder {
  public:
-  Builder(const EdgePointImage& image, int x, int y, ColorRows& samples)
-      : image_(image), x_(x), y_(y), samples_(samples) {}
+  Builder(const EdgePointImage& image, int x, int y, const ComplexPixelColors& colors)
+      : image_(image), x_(x), y_(y), colors_(colors) {}
 
   Subpixels build() {
     for (int j = 0; j < kSide; ++j) {
@@ -87,8 +87,10 @@ class Builder {
                                                      : region == RegionOf::a);
     }
     if (has_point && region != RegionOf::ambiguous) {
-      const ColorRow row = samples_.row(py);
-      out_.samples[out_.sample_count++] = {bit, {row.r[px], row.g[px], row.b[px]}};
+      const ColorRow row = colors_.samples.row(py);
+      Rgb color{row.r[px], row.g[px], row.b[px]};
+      if (colors_.tints != nullptr) color *= colors_.tints->at(px, py);
+      out_.samples[out_.sample_count++] = {bit, color};
     }
     out_.edge[std::size_t(bit)] = std::uint16_t(code.edge());
     out_.primary_is_a[std::size_t(bit)] = code.primary_is_a();
@@ -119,7 +121,7 @@ class Builder {
 
   const EdgePointImage& image_;
   int x_, y_;
-  ColorRows& samples_;
+  const ComplexPixelColors& colors_;
   Subpixels out_;
 };
 
@@ -174,9 +176,10 @@ std::optional<Rgb> region_color(const Subpixels& s, const Matrices& matrices, in
 
 }  // namespace
 
-Rgb reconstruct_complex_pixel(const EdgePointImage& image, int x, int y, ColorRows& samples,
-                              Rgb fallback) {
-  const Subpixels s = Builder(image, x, y, samples).build();
+Rgb reconstruct_complex_pixel(const EdgePointImage& image, int x, int y,
+                              const ComplexPixelColors& colors) {
+  const Subpixels s = Builder(image, x, y, colors).build();
+  const Rgb fallback = colors.fallback;
   const Matrices matrices = find_matrices(s);
   Rgb sum;
   for (int j = 2; j < 4; ++j) {

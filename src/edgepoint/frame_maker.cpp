@@ -105,7 +105,8 @@ FrameReport FrameMaker::make(const PixelView& view, std::span<const WorldEdge> e
   report.times.points += watch.lap();
 
   std::vector<BandReport> reports(bands_.size());
-  const ReconstructionSettings reconstruction{settings.complex_filter, settings.frame};
+  const TintImage* const tints = settings.find_tints ? settings.find_tints(image_) : nullptr;
+  const ReconstructionSettings reconstruction{settings.complex_filter, settings.frame, tints};
   parallel_for(bands_.size(), parallel, [&](std::size_t i) {
     reports[i] = reconstruct_band(image_, cache, reconstruction, bands_[i], picture, wanted_);
   });

@@ -8,6 +8,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -18,6 +19,7 @@
 #include "edgepoint/edge_raster.h"
 #include "edgepoint/pixel_view.h"
 #include "edgepoint/point_cache.h"
+#include "edgepoint/tint_image.h"
 
 namespace arris {
 
@@ -38,6 +40,8 @@ struct FrameSettings {
   std::uint32_t frame = 0;
   bool complex_filter = true;
   int threads = 0;  // 0: all
+  // Asked once edges and points are known; empty, or null: nothing is tinted.
+  std::function<const TintImage*(const EdgePointImage&)> find_tints;
 };
 
 class FrameMaker {

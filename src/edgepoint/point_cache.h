@@ -76,6 +76,7 @@ class PointCache {
   [[nodiscard]] const float* y() const { return y_.data(); }
   [[nodiscard]] const float* z() const { return z_.data(); }
   [[nodiscard]] const std::uint32_t* packed_radiance() const { return radiance_.data(); }
+  [[nodiscard]] const std::uint32_t* objects() const { return object_.data(); }
   // The frames' numbers, modulo 2^16.
   [[nodiscard]] const std::uint16_t* born() const { return born_.data(); }
 

@@ -18,6 +18,7 @@
 #include "render/shadow_finder.h"
 #include "render/stale_points.h"
 #include "render/still_film.h"
+#include "render/texture_tints.h"
 
 namespace arris {
 namespace {
@@ -62,6 +63,7 @@ class EdgePointEngine::Impl {
         cache_(std::size_t(std::ceil(kCachePerPixel * pixel_count()))),
         maker_(image_.width_px, image_.height_px),
         picture_(image_.width_px, image_.height_px, 3),
+        tints_(scene_->scene()),
         film_(maker_.image().codes.size()),
         wanted_(film_size(), 255) {
     if (!settings.synchronous) workers_ = std::make_unique<ShadeWorkers>(settings.threads);
@@ -89,7 +91,7 @@ class EdgePointEngine::Impl {
     } else if (frame_ == 0) {
       shade_now(*make_plan(rays, std::max(settings_.first_density, settings_.density)));
     }
-    make_frame(make_pixel_view(rays, image_));
+    make_frame(rays);
     ++frame_;
     ++still_frames_;
     if (workers_) {
@@ -116,9 +118,11 @@ class EdgePointEngine::Impl {
     still_frames_ = 0;
     ++view_;
     film_.clear();
+    tints_.clear();
   }
 
-  void make_frame(const PixelView& view) {
+  void make_frame(const CameraRays& camera) {
+    const PixelView view = make_pixel_view(camera, image_);
     const Clock::time_point start = Clock::now();
     EdgeTotals totals;
     std::vector<WorldEdge> edges;
@@ -129,8 +133,13 @@ class EdgePointEngine::Impl {
       totals.shadow = shadows_.edges().size();
     }
     stats_.stages.edges = milliseconds_since(start);
-    const FrameReport report = maker_.make(
-        view, edges, cache_, {frame_, settings_.complex_filter, settings_.threads}, picture_);
+    FrameSettings frame{frame_, settings_.complex_filter, settings_.threads, {}};
+    if (settings_.sharp_textures) {
+      frame.find_tints = [&](const EdgePointImage& image) {
+        return tints_.update(*scene_, camera, cache_, image, settings_.threads);
+      };
+    }
+    const FrameReport report = maker_.make(view, edges, cache_, frame, picture_);
     film_.blend_into(picture_, kNeighbors * float(shader_.paths), settings_.threads);
     stats_.stages.total = milliseconds_since(start);
     keep_report(report, totals);
@@ -248,6 +257,7 @@ class EdgePointEngine::Impl {
   PointCache cache_;
   FrameMaker maker_;
   Image picture_;
+  TextureTints tints_;
   StillFilm film_;
   std::vector<std::uint8_t> wanted_;
   EdgePointStats stats_;
