@@ -53,6 +53,11 @@ FrameMaker::FrameMaker(int width_px, int height_px)
       wanted_(image_.codes.size(), 255),
       bands_(make_bands(height_px)) {}
 
+void FrameMaker::forget() {
+  std::fill(wanted_.begin(), wanted_.end(), std::uint8_t{255});
+  std::fill(image_.points.begin(), image_.points.end(), PointKey());
+}
+
 void FrameMaker::find_depth(const PixelView& view, int threads) {
   parallel_for(std::size_t(depth_.cell_rows()), {.grain = 8, .threads = threads},
                [&](std::size_t i) { depth_.fill_cells(image_.points, int(i)); });

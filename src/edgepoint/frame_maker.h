@@ -52,6 +52,8 @@ class FrameMaker {
   FrameReport make(const PixelView& view, std::span<const WorldEdge> edges, PointCache& cache,
                    const FrameSettings& settings, Image& picture);
 
+  // As if no frame had been made: every pixel wants a point, and none is seen.
+  void forget();
   [[nodiscard]] const EdgePointImage& image() const { return image_; }
   // How much each pixel wants a new sample (reconstruct.h).
   [[nodiscard]] std::span<const std::uint8_t> wanted() const { return wanted_; }

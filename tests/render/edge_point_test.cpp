@@ -288,5 +288,61 @@ TEST(EdgePoint, a_still_view_of_a_texture_converges_to_the_path_traced_picture) 
   EXPECT_LT(rmse(*picture, reference), 1.5 * rmse(path_picture(scene, 256), reference));
 }
 
+TEST(EdgePoint, cheap_frames_are_traced) {
+  const auto scene = prepare_scene(make_scene(40));
+  EdgePointSettings settings = synchronous();
+  settings.trace_below_ms = 1e6;
+  settings.paths_per_point = 8;
+  EdgePointEngine engine(scene, settings);
+  Camera camera = *scene_of(*scene).camera;
+  const Vec3d end = camera.position;
+  for (int i = 1; i >= 0; --i) {
+    camera.position = end + Vec3d{0.03 * i, 0, 0};
+    engine.set_camera(camera);
+    const Image& frame = engine.next_frame();
+    EXPECT_TRUE(engine.stats().traced);
+    if (i == 0) EXPECT_LT(rmse(frame, path_picture(scene, 8)), 1e-6);
+  }
+  // Paths add up while the view stands still.
+  EXPECT_LT(rmse(engine.next_frame(), path_picture(scene, 16)), 1e-6);
+}
+
+TEST(EdgePoint, dear_frames_are_not_traced) {
+  const auto scene = prepare_scene(make_scene(40));
+  std::vector<Image> pictures;
+  for (const double below_ms : {0.0, 1.0}) {
+    EdgePointSettings settings = synchronous();
+    settings.trace_below_ms = below_ms;
+    EdgePointEngine engine(scene, settings);
+    engine.next_frame();
+    pictures.push_back(engine.next_frame());
+    EXPECT_FALSE(engine.stats().traced);
+  }
+  EXPECT_EQ(pictures[0].values, pictures[1].values);
+}
+
+TEST(EdgePoint, what_shading_costs_decides_beside_frames_too) {
+  EdgePointSettings settings;
+  settings.trace_below_ms = 1e9;
+  EdgePointEngine engine(prepare_scene(make_scene(24)), settings);
+  while (!engine.stats().traced) {
+    engine.next_frame();
+    std::this_thread::yield();
+  }
+  EXPECT_EQ(engine.stats().edges.silhouette, 0U);
+}
+
+TEST(EdgePoint, bad_settings_and_cameras_are_errors) {
+  const auto scene = prepare_scene(make_scene(24));
+  EdgePointSettings settings = synchronous();
+  settings.density = 0;
+  EXPECT_THROW(EdgePointEngine(scene, settings), Error);
+  EdgePointEngine engine(scene, synchronous());
+  Camera camera = *scene_of(*scene).camera;
+  camera.target = camera.position;
+  engine.set_camera(camera);
+  EXPECT_THROW(engine.next_frame(), Error);
+}
+
 }  // namespace
 }  // namespace arris::test
