@@ -36,6 +36,9 @@ OptionGroup edge_point_group() {
             "single picture)"},
            {"--point-paths", "N",
             "edge-point: paths for each point (default: 4 direct, 8 glossy, 16 gi)"},
+           {"--trace-below", "MS",
+            "edge-point: frames for which paths through every pixel are so cheap, at 4 million "
+            "rays a second, are traced instead, which is said; 0: none (default: 16)"},
            {"--edges", "on|off",
             "edge-point: off interpolates across all edges, for comparison (default: on)"}}};
 }

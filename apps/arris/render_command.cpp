@@ -120,6 +120,9 @@ void report_scene(Console& console, const Scene& scene, const PrepareStats& stat
 
 // What was done for each pixel; of beams, for all of them.
 std::string format_work(const JobResult& result) {
+  if (result.edge_point && result.edge_point->traced) {
+    return "every pixel traced, which is cheaper than edges and points";
+  }
   if (result.edge_point && result.part.samples[0].last == 1) {
     return fmt::format("{} new points of {}", result.edge_point->new_points,
                        result.edge_point->points);

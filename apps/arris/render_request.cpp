@@ -79,6 +79,8 @@ std::optional<SampleRange> make_samples(const Arguments& arguments) {
 constexpr Integrator kIntegrators[] = {Integrator::path, Integrator::beam, Integrator::edge_point};
 // What the paper's scenes have, of pixels shaded a frame.
 constexpr double kFrameDensity = 0.02;
+// Of a frame that is traced instead: 60 a second.
+constexpr double kTraceBelowMs = 16;
 constexpr std::uint64_t kMostPointPaths = 65536;
 
 Integrator parse_integrator(const Arguments& arguments) {
@@ -88,7 +90,8 @@ Integrator parse_integrator(const Arguments& arguments) {
 }
 
 EdgePointSettings parse_edge_point_settings(const Arguments& arguments, Integrator integrator) {
-  for (const char* option : {"--shader", "--density", "--edges", "--point-paths"}) {
+  for (const char* option :
+       {"--shader", "--density", "--edges", "--point-paths", "--trace-below"}) {
     if (!arguments.has(option) || integrator == Integrator::edge_point) continue;
     throw Error(Error::Kind::input, option, "needs --integrator edge-point");
   }
@@ -108,6 +111,15 @@ EdgePointSettings parse_edge_point_settings(const Arguments& arguments, Integrat
   }
   if (const auto given = find_given(arguments, "--point-paths")) {
     settings.paths_per_point = int(parse_count(*given, 1, kMostPointPaths));
+  }
+  // A view that stands still goes over to paths by itself.
+  settings.trace_below_ms = arguments.has("--frames") ? kTraceBelowMs : 0;
+  if (const auto given = find_given(arguments, "--trace-below")) {
+    if (!arguments.has("--frames")) {
+      throw Error(Error::Kind::input, "--trace-below",
+                  "needs --frames: a view that stands still goes over to paths by itself");
+    }
+    settings.trace_below_ms = parse_real(*given, {0, 1e9});
   }
   return settings;
 }

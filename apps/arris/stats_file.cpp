@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <iterator>
 #include <nlohmann/json.hpp>
 #include <vector>
 
@@ -26,7 +27,16 @@ double median(const std::vector<EdgePointStats>& frames, const Value& value) {
   return values[values.size() / 2];
 }
 
-nlohmann::ordered_json edge_point_json(const std::vector<EdgePointStats>& frames, double pixels) {
+// Traced frames have no stages.
+std::vector<EdgePointStats> made_of_points(const std::vector<EdgePointStats>& frames) {
+  std::vector<EdgePointStats> made;
+  std::copy_if(frames.begin(), frames.end(), std::back_inserter(made),
+               [](const EdgePointStats& s) { return !s.traced; });
+  return made.empty() ? frames : made;
+}
+
+nlohmann::ordered_json edge_point_json(const std::vector<EdgePointStats>& all, double pixels) {
+  const std::vector<EdgePointStats> frames = made_of_points(all);
   using Stages = EdgePointStats::Stages;
   const auto stage = [&](double Stages::*member) {
     return median(frames, [&](const EdgePointStats& s) { return s.stages.*member; });
@@ -38,8 +48,11 @@ nlohmann::ordered_json edge_point_json(const std::vector<EdgePointStats>& frames
     return std::uint64_t(median(frames, [&](const EdgePointStats& s) { return s.edges.*member; }));
   };
   const double total = stage(&Stages::total);
+  const auto traced =
+      std::count_if(all.begin(), all.end(), [](const EdgePointStats& s) { return s.traced; });
   nlohmann::ordered_json json;
-  json["frames"] = frames.size();
+  json["frames"] = all.size();
+  json["traced"] = traced;
   json["fps"] = total > 0 ? 1000 / total : 0;
   json["stages_ms"] = {{"edges", stage(&Stages::edges)},
                        {"raster", stage(&Stages::raster)},

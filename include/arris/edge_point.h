@@ -2,7 +2,8 @@
 // What       EdgePointEngine makes one frame after another from few shaded points and from edges found analytically:
 //            a pixel takes its colour from points that no edge parts from it. Points are kept from frame to frame;
 //            each frame asks for new ones where they are missed most.
-// Guarantee  next_frame() never waits for shading, and its own work does not depend on what shading costs. With
+// Guarantee  next_frame() never waits for shading, and its own work does not depend on what shading costs, but where
+//            it traces every pixel because that is cheap (`trace_below_ms`). With
 //            `synchronous` the same calls give the same frames, at any number of threads.
 // Limits     one thread at a time may call an engine
 // Source     K. Bala, B. Walter, D. P. Greenberg, "Combining Edges and Points for Interactive High-Quality
@@ -26,6 +27,7 @@ enum class EdgePointShader {
   gi,      // and all light between surfaces: path tracing
 };
 
+// The engine throws Error{input} for what is not so.
 struct EdgePointSettings {
   EdgePointShader shader = EdgePointShader::gi;
   // New points a frame, in parts of the pixels: above 0, at most 1.
@@ -36,8 +38,13 @@ struct EdgePointSettings {
   bool shadow_edges = true;  // of lights and the sun
   // Pixels with several edges are reconstructed at twice the resolution.
   bool complex_filter = true;
+  // Points keep light, and pixels multiply it by their own textures; false: points keep colours, as in the paper.
+  bool sharp_textures = true;
   bool synchronous = false;    // shading is done within next_frame()
   double first_density = 0.2;  // synchronous: of points before the first frame
+  // A frame is made by tracing a point's paths through every pixel where that takes less: milliseconds, or, unless
+  // `synchronous`, less than edges and points take themselves. If `synchronous`, by a ray's fixed cost. 0: never.
+  double trace_below_ms = 0;
   std::uint32_t seed = 0;
   int threads = 0;  // 0: all
 };
@@ -55,6 +62,8 @@ struct EdgePointStats {
   struct Edges {
     std::uint64_t silhouette = 0, sharp = 0, shadow = 0;
   } edges;
+  // Every pixel was traced, without edges and points: all but `total`, which has the tracing in it, is 0.
+  bool traced = false;
   std::uint64_t new_points = 0;  // that came since the last frame
   std::uint64_t points = 0;      // in the cache
   std::uint64_t hidden = 0;      // of them, seen through gaps and left out
@@ -74,6 +83,7 @@ class EdgePointEngine {
   EdgePointEngine& operator=(const EdgePointEngine&) = delete;
   ~EdgePointEngine();
 
+  // next_frame() throws Error{input} for a camera that validate_scene() would refuse.
   void set_camera(const Camera& camera);
   // Changes show in the first frame for which they are prepared: the next one if `synchronous`, else as soon as a
   // thread of their own is done with them. Scenes that were prepared with Placement::movable are quick to change.

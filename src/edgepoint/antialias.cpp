@@ -5,10 +5,6 @@
 namespace arris {
 namespace {
 
-Rgb color_at(const PrimaryRows& row, int x) {
-  return {row.color.r[x], row.color.g[x], row.color.b[x]};
-}
-
 // A side: the neighbour beyond it, the corners at its two ends in this pixel and in that one.
 struct Side {
   int dx, dy;
@@ -35,14 +31,14 @@ Rgb antialias_simple_pixel(const EdgePointImage& image, int x, int y,
   const EdgeTables::Sides sides =
       (code.primary_is_a() ? tables.sides_b : tables.sides_a)[code.edge()];
   const bool knows_primary = rows.here.weight[x] > 0;
-  const Rgb primary = color_at(rows.here, x);
+  const Rgb primary = color_at(rows.here.color, x);
   for (unsigned i = 0; i < sides.count; ++i) {
     const Side& side = kSides[sides.order >> (2 * i) & 3U];
     const int nx = x + side.dx, ny = y + side.dy;
     if (nx < 0 || ny < 0 || nx >= image.width_px || ny >= image.height_px) continue;
     const PrimaryRows& row = side.dy < 0 ? rows.above : side.dy > 0 ? rows.below : rows.here;
     if (!(row.weight[nx] > 0) || !touches(image.corners, side, x, y)) continue;
-    const Rgb secondary = color_at(row, nx);
+    const Rgb secondary = color_at(row.color, nx);
     return knows_primary ? primary * area + secondary * (1 - area) : secondary;
   }
   return primary;

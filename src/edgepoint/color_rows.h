@@ -7,11 +7,17 @@
 #include <cstddef>
 #include <vector>
 
+#include "arris/math.h"
+
 namespace arris {
 
 struct ColorRow {
   float *r, *g, *b;
 };
+
+inline Rgb color_at(const ColorRow& row, int x) {
+  return {row.r[x], row.g[x], row.b[x]};
+}
 
 class ColorRows {
  public:

@@ -76,9 +76,8 @@ struct PixelLines {
 
 class Builder {
  public:
-  Builder(const EdgePointImage& image, int x, int y, ColorRows& samples,
-          const PrimaryNeighborhood& around)
-      : image_(image), x_(x), y_(y), samples_(samples), around_(around) {}
+  Builder(const EdgePointImage& image, int x, int y, const ComplexPixelColors& colors)
+      : image_(image), x_(x), y_(y), colors_(colors) {}
 
   Subpixels build() {
     for (int j = 0; j < 3; ++j) {
@@ -140,15 +139,20 @@ class Builder {
     }
   }
 
-  void set_sample(int bit, int px, int py) { set_color(bit, samples_.row(py), px, 1); }
+  void set_sample(int bit, int px, int py) {
+    Rgb color = color_at(colors_.samples.row(py), px);
+    if (colors_.tints != nullptr) color *= colors_.tints->at(px, py);
+    set_color(bit, color, 1);
+  }
   // As interpolated.
   void set_primary(int bit, int px, int py) {
-    const PrimaryRows& row = py < y_ ? around_.above : py > y_ ? around_.below : around_.here;
-    if (row.weight[px] > 0) set_color(bit, row.color, px, std::min(row.weight[px], 1.0F));
+    const PrimaryNeighborhood& around = colors_.around;
+    const PrimaryRows& row = py < y_ ? around.above : py > y_ ? around.below : around.here;
+    if (row.weight[px] > 0) set_color(bit, color_at(row.color, px), std::min(row.weight[px], 1.0F));
   }
-  void set_color(int bit, ColorRow row, int px, float weight) {
+  void set_color(int bit, Rgb color, float weight) {
     out_.known |= Word{1} << unsigned(bit);
-    out_.color[std::size_t(bit)] = {row.r[px], row.g[px], row.b[px]};
+    out_.color[std::size_t(bit)] = color;
     out_.weight[std::size_t(bit)] = weight;
   }
 
@@ -178,8 +182,7 @@ class Builder {
 
   const EdgePointImage& image_;
   int x_, y_;
-  ColorRows& samples_;
-  const PrimaryNeighborhood& around_;
+  const ComplexPixelColors& colors_;
   const EdgeTables& tables_ = edge_tables();
   Subpixels out_;
 };
@@ -230,9 +233,10 @@ std::optional<Rgb> region_color(const Subpixels& s, const Matrices& matrices, in
 
 }  // namespace
 
-Rgb reconstruct_complex_pixel(const EdgePointImage& image, int x, int y, ColorRows& samples,
-                              const PrimaryNeighborhood& around, Rgb fallback) {
-  const Subpixels s = Builder(image, x, y, samples, around).build();
+Rgb reconstruct_complex_pixel(const EdgePointImage& image, int x, int y,
+                              const ComplexPixelColors& colors) {
+  const Subpixels s = Builder(image, x, y, colors).build();
+  const Rgb fallback = colors.fallback;
   const Matrices matrices = find_matrices(s);
   Rgb sum;
   for (int k = 0; k < 4; ++k) {

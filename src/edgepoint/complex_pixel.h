@@ -11,12 +11,18 @@
 #include "edgepoint/antialias.h"
 #include "edgepoint/color_rows.h"
 #include "edgepoint/edge_point_image.h"
+#include "edgepoint/tint_image.h"
 
 namespace arris {
 
-// samples: the colours of the points of rows y − 1 to y + 1, also of those that classification has rejected.
-// fallback: the pixel's colour with all samples taken as reachable.
-Rgb reconstruct_complex_pixel(const EdgePointImage& image, int x, int y, ColorRows& samples,
-                              const PrimaryNeighborhood& around, Rgb fallback);
+struct ComplexPixelColors {
+  // Of the points of rows y − 1 to y + 1, also of those that classification has rejected, without their tints.
+  ColorRows& samples;
+  PrimaryNeighborhood around;        // tinted
+  const TintImage* tints = nullptr;  // of pixels, whose samples have the same; null: none
+  Rgb fallback;                      // the pixel's colour with all samples taken as reachable
+};
+Rgb reconstruct_complex_pixel(const EdgePointImage& image, int x, int y,
+                              const ComplexPixelColors& colors);
 
 }  // namespace arris

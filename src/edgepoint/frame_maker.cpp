@@ -67,6 +67,11 @@ FrameMaker::FrameMaker(int width_px, int height_px)
       wanted_(image_.codes.size(), 255),
       bands_(make_bands(height_px)) {}
 
+void FrameMaker::forget() {
+  std::fill(wanted_.begin(), wanted_.end(), std::uint8_t{255});
+  std::fill(image_.points.begin(), image_.points.end(), PointKey());
+}
+
 void FrameMaker::find_points(const PixelView& view, const PointCache& cache, int threads) {
   static_assert(kBandRows % DepthCells::kSide == 0, "bands are of whole cells");
   const std::vector<RowBand> block_rows = find_block_rows(view, cache, threads);
@@ -155,7 +160,8 @@ FrameReport FrameMaker::make(const PixelView& view, const FrameEdges& edges, Poi
   report.times.points += watch.lap();
 
   std::vector<BandReport> reports(bands_.size());
-  const ReconstructionSettings reconstruction{settings.complex_filter, settings.frame};
+  const TintImage* const tints = settings.find_tints ? settings.find_tints(image_) : nullptr;
+  const ReconstructionSettings reconstruction{settings.complex_filter, settings.frame, tints};
   parallel_for(bands_.size(), parallel, [&](std::size_t i) {
     reports[i] = reconstruct_band(image_, cache, reconstruction, bands_[i], picture, wanted_);
   });

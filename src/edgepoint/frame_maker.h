@@ -8,6 +8,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -18,6 +19,7 @@
 #include "edgepoint/edge_raster.h"
 #include "edgepoint/pixel_view.h"
 #include "edgepoint/point_cache.h"
+#include "edgepoint/tint_image.h"
 
 namespace arris {
 
@@ -38,6 +40,8 @@ struct FrameSettings {
   std::uint32_t frame = 0;
   bool complex_filter = true;
   int threads = 0;  // 0: all
+  // Asked once edges and points are known; empty, or null: nothing is tinted.
+  std::function<const TintImage*(const EdgePointImage&)> find_tints;
 };
 
 struct FrameEdges {
@@ -53,6 +57,8 @@ class FrameMaker {
   FrameReport make(const PixelView& view, const FrameEdges& edges, PointCache& cache,
                    const FrameSettings& settings, Image& picture);
 
+  // As if no frame had been made: every pixel wants a point, and none is seen.
+  void forget();
   [[nodiscard]] const EdgePointImage& image() const { return image_; }
   // How much each pixel wants a new sample (reconstruct.h).
   [[nodiscard]] std::span<const std::uint8_t> wanted() const { return wanted_; }

@@ -43,6 +43,7 @@ class Band {
     for (int y = first; y < last; ++y) {
       fetch(y + 2);
       interpolate_row(image_, y, samples_, primary_.row(y), weight_row(y));
+      if (settings_.tints != nullptr) tint_row(primary_.row(y), y);
       if (y > band_.first) finish(y - 1);
     }
     if (last == band_.last) finish(last - 1);
@@ -71,6 +72,19 @@ class Band {
                  looks_, samples_.row(y), wish_row(y));
   }
 
+  void tint_row(const ColorRow& row, int y) const {
+    const TintImage& tints = *settings_.tints;
+    for (int word = 0; word < tints.is_tinted.words(); ++word) {
+      for (std::uint64_t bits = tints.is_tinted.row(y)[word]; bits != 0; bits &= bits - 1) {
+        const int x = 64 * word + std::countr_zero(bits);
+        const Rgb tint = tints.values[image_.offset(x, y)];
+        row.r[x] *= tint.x;
+        row.g[x] *= tint.y;
+        row.b[x] *= tint.z;
+      }
+    }
+  }
+
   // Row y, when its neighbours are interpolated.
   void finish(int y) {
     const PrimaryRows here = primary_rows(y);
@@ -87,7 +101,8 @@ class Band {
     for_crossed(y, [&](int x) {
       if (settings_.complex_filter && image_.codes[image_.offset(x, y)].is_complex()) {
         const Rgb fallback{here.color.r[x], here.color.g[x], here.color.b[x]};
-        set_pixel(out + 3 * x, reconstruct_complex_pixel(image_, x, y, samples_, rows, fallback));
+        set_pixel(out + 3 * x, reconstruct_complex_pixel(
+                                   image_, x, y, {samples_, rows, settings_.tints, fallback}));
       }
     });
     report_.times.complex += lap();

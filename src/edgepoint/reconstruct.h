@@ -14,12 +14,14 @@
 #include "edgepoint/edge_point_image.h"
 #include "edgepoint/pixel_view.h"
 #include "edgepoint/point_cache.h"
+#include "edgepoint/tint_image.h"
 
 namespace arris {
 
 struct ReconstructionSettings {
   bool complex_filter = true;
-  std::uint32_t frame = 0;  // against which the age of points is counted
+  std::uint32_t frame = 0;           // against which the age of points is counted
+  const TintImage* tints = nullptr;  // null: none
 };
 
 // Of one thread, milliseconds.

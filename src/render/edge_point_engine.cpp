@@ -1,14 +1,18 @@
 // edge_point_engine.cpp — EdgePointEngine: what is behind its public face
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <memory>
 #include <optional>
 #include <span>
+#include <string>
 #include <utility>
 #include <vector>
 
 #include "arris/edge_point.h"
+#include "arris/error.h"
 #include "base/parallel_for.h"
 #include "edgepoint/frame_maker.h"
 #include "edgepoint/sample_plan.h"
@@ -19,6 +23,9 @@
 #include "render/shadow_finder.h"
 #include "render/stale_points.h"
 #include "render/still_film.h"
+#include "render/texture_tints.h"
+#include "render/trace_choice.h"
+#include "scene/validate_placement.h"
 
 namespace arris {
 namespace {
@@ -47,13 +54,37 @@ bool is_same(const Camera& a, const Camera& b) {
   return a.position == b.position && a.target == b.target && a.up == b.up && a.fov_deg == b.fov_deg;
 }
 
+EdgePointSettings checked(const EdgePointSettings& settings) {
+  const auto check = [](bool holds, const char* setting, double value, const char* range) {
+    if (holds) return;
+    throw Error(Error::Kind::input, setting, fmt::format("{:g} is not {}", value, range));
+  };
+  check(settings.density > 0 && settings.density <= 1, "density", settings.density,
+        "above 0 and at most 1");
+  check(settings.first_density >= 0 && settings.first_density <= 1, "first_density",
+        settings.first_density, "within 0 and 1");
+  check(settings.paths_per_point >= 0, "paths_per_point", settings.paths_per_point, "0 or more");
+  check(settings.trace_below_ms >= 0, "trace_below_ms", settings.trace_below_ms, "0 or more");
+  return settings;
+}
+
+void check_view(const Scene& scene, const Camera& camera) {
+  Scene seen;
+  seen.image = scene.image;
+  seen.camera = camera;
+  const std::vector<std::string> problems = validate_placement(seen);
+  if (!problems.empty()) {
+    throw Error(Error::Kind::input, "", fmt::format("{}", fmt::join(problems, "\n  ")));
+  }
+}
+
 }  // namespace
 
 class EdgePointEngine::Impl {
  public:
   Impl(std::shared_ptr<const PreparedScene> scene, const EdgePointSettings& settings)
       : scene_(std::move(scene)),
-        settings_(settings),
+        settings_(checked(settings)),
         shader_(make_point_shader(settings)),
         image_(scene_->scene().image),
         camera_(*scene_->scene().camera),
@@ -63,14 +94,18 @@ class EdgePointEngine::Impl {
         cache_(std::size_t(std::ceil(kCachePerPixel * pixel_count()))),
         maker_(image_.width_px, image_.height_px),
         picture_(image_.width_px, image_.height_px, 3),
+        tints_(scene_->scene()),
         film_(maker_.image().codes.size()),
-        wanted_(film_size(), 255) {
+        wanted_(film_size(), 255),
+        choice_(settings.trace_below_ms,
+                settings.synchronous ? CostMeasure::rays : CostMeasure::seconds) {
     if (!settings.synchronous) workers_ = std::make_unique<ShadeWorkers>(settings.threads);
   }
 
   void set_camera(const Camera& camera) {
     if (is_same(camera, camera_)) return;
     camera_ = camera;
+    camera_checked_ = false;
     view_changed();
   }
 
@@ -84,15 +119,22 @@ class EdgePointEngine::Impl {
     if (std::shared_ptr<const PreparedScene> changed = updater_.poll(scene_)) {
       set_scene(std::move(changed));
     }
+    if (!camera_checked_) check_view(scene_->scene(), camera_);
+    camera_checked_ = true;
     const CameraRays rays = make_camera_rays(camera_, image_);
-    if (workers_) {
-      collect();
-    } else if (frame_ == 0) {
-      shade_now(*make_plan(rays, std::max(settings_.first_density, settings_.density)));
+    if (workers_) collect();
+    if (!workers_ && frame_ == 0) shade_first(rays);
+    stats_.traced = choice_.decide(pixel_count(), frame_ms_);
+    if (stats_.traced) {
+      trace_frame(rays);
+    } else {
+      if (!workers_ && !has_points_) shade_first(rays);
+      make_frame(rays);
     }
-    make_frame(make_pixel_view(rays, image_));
+    has_points_ = !stats_.traced;
     ++frame_;
     ++still_frames_;
+    if (stats_.traced) return picture_;
     if (workers_) {
       workers_->set_plan(make_plan(rays, planned_density()));
       workers_->set_paused(false);
@@ -117,9 +159,11 @@ class EdgePointEngine::Impl {
     still_frames_ = 0;
     ++view_;
     film_.clear();
+    tints_.clear();
   }
 
-  void make_frame(const PixelView& view) {
+  void make_frame(const CameraRays& camera) {
+    const PixelView view = make_pixel_view(camera, image_);
     const Clock::time_point start = Clock::now();
     EdgeTotals totals;
     std::vector<std::vector<WorldEdge>> found;
@@ -130,12 +174,54 @@ class EdgePointEngine::Impl {
       totals.shadow = shadows_.edges().size();
     }
     stats_.stages.edges = milliseconds_since(start);
-    const std::span<const SoftEdge> shadows = shadows_.edges();
-    const FrameReport report = maker_.make(
-        view, {edges, shadows}, cache_, {frame_, settings_.complex_filter, settings_.threads}, picture_);
+    FrameSettings frame{frame_, settings_.complex_filter, settings_.threads, {}};
+    if (settings_.sharp_textures) {
+      frame.find_tints = [&](const EdgePointImage& image) {
+        return tints_.update(*scene_, camera, cache_, image, settings_.threads);
+      };
+    }
+    const FrameReport report = maker_.make(view, {edges, shadows_.edges()}, cache_, frame, picture_);
     film_.blend_into(picture_, kNeighbors * float(shader_.paths), settings_.threads);
-    stats_.stages.total = milliseconds_since(start);
+    stats_.stages.total = frame_ms_ = milliseconds_since(start);
     keep_report(report, totals);
+  }
+
+  // Before a frame for which no points are known.
+  void shade_first(const CameraRays& camera) {
+    maker_.forget();
+    shade_now(*make_plan(camera, std::max(settings_.first_density, settings_.density)));
+    has_points_ = true;
+  }
+
+  // Paths of the path tracer's sequence, which add up while the view stands still.
+  void trace_frame(const CameraRays& camera) {
+    const Clock::time_point start = Clock::now();
+    const PixelFilter filter(image_.filter);
+    const auto paths = std::uint32_t(shader_.paths);
+    std::vector<PathRays> rays(std::size_t(image_.height_px));
+    std::vector<Rgb> sums(film_size());
+    parallel_for(rays.size(), {.grain = 1, .threads = settings_.threads}, [&](std::size_t y) {
+      for (int x = 0; x < image_.width_px; ++x) {
+        const std::size_t at = maker_.image().offset(x, int(y));
+        sums[at] = shade_pixel(*scene_, camera, filter, shader_,
+                               {x, int(y), film_.paths_of(at), paths}, rays[y]);
+      }
+    });
+    for (std::size_t i = 0; i < sums.size(); ++i) film_.add(i, sums[i], paths);
+    film_.blend_into(picture_, 0, settings_.threads);
+    for (const PathRays& row : rays) {
+      stats_.rays.total += row.total;
+      stats_.rays.rounded += row.rounded;
+    }
+    stats_.rays.camera += sums.size() * paths;
+    stats_.stages.total = milliseconds_since(start);
+    stats_.shading_seconds += stats_.stages.total / 1e3;
+    stats_.still_paths = film_.least_paths();
+    stats_.points = cache_.size();
+    stats_.cache_bytes = cache_.bytes();
+    stats_.image_bytes = maker_.image().bytes();
+    // The frame itself was on all threads.
+    choice_.add({sums.size(), stats_.rays.total, stats_.stages.total / 1e3}, 1);
   }
 
   [[nodiscard]] double planned_density() const {
@@ -190,17 +276,27 @@ class EdgePointEngine::Impl {
       const std::size_t last = std::min(plan.items.size(), first + ShadePlan::kStep);
       for (std::size_t i = first; i < last; ++i) shade_item(plan, plan.items[i], parts[part]);
     });
-    for (const ShadeResults& part : parts) take(plan, part);
+    ShadingCost cost;
+    for (const ShadeResults& part : parts) {
+      take(plan, part);
+      cost.items += part.items;
+      cost.rays += part.rays.total;
+    }
+    choice_.add(cost, 1);
     stats_.shading_seconds += milliseconds_since(start) / 1e3;
   }
 
   void collect() {
+    ShadingCost cost;
     std::uint64_t items = 0;
     for (const ShadeWorkers::Batch& batch : workers_->collect()) {
       take(*batch.plan, batch.results);
       items += batch.results.items;
+      cost.rays += batch.results.rays.total;
+      cost.thread_seconds += batch.results.thread_seconds;
     }
-    last_items_ = items;
+    cost.items = last_items_ = items;
+    choice_.add(cost, workers_->thread_count());
   }
 
   void take(const ShadePlan& plan, const ShadeResults& results) {
@@ -250,13 +346,18 @@ class EdgePointEngine::Impl {
   PointCache cache_;
   FrameMaker maker_;
   Image picture_;
+  TextureTints tints_;
   StillFilm film_;
   std::vector<std::uint8_t> wanted_;
+  TraceChoice choice_;
   EdgePointStats stats_;
   std::uint32_t frame_ = 0;
   std::uint32_t still_frames_ = 0;
   std::uint64_t view_ = 0;
   std::uint64_t last_items_ = 0;
+  double frame_ms_ = 0;      // of the last one of edges and points
+  bool has_points_ = false;  // of the last frame
+  bool camera_checked_ = true;
   std::unique_ptr<ShadeWorkers> workers_;  // null: synchronous
 };
 
@@ -311,6 +412,7 @@ void EdgePointEngine::Impl::set_scene(std::shared_ptr<const PreparedScene> scene
 
 Image EdgePointEngine::Impl::classes_picture() const {
   Image out(image_.width_px, image_.height_px, 3);
+  if (stats_.traced) return out;
   const EdgePointImage& image = maker_.image();
   for (std::size_t i = 0; i < image.codes.size(); ++i) {
     const PixelCode code = image.codes[i];

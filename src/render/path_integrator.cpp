@@ -244,6 +244,10 @@ void fill_first_hit(FirstHit& first, const SurfaceHit& hit, const SurfaceMateria
   first.object = hit.object.index + 1;
 }
 
+void whiten_texture(const Material& material, SurfaceMaterial& shown) {
+  if (is_tinted(material, shown)) shown.base_color = material.base_color;
+}
+
 PathSample trace(Path& path) {
   const PreparedScene& scene = path.scene;
   const PathSettings& settings = path.settings;
@@ -261,6 +265,9 @@ PathSample trace(Path& path) {
     rays.rounded += hit->rounding_seen ? 1 : 0;
     std::optional<SurfaceMaterial> storage;
     const SurfaceMaterial& material = material_at(scene, *hit, storage);
+    if (settings.white_textures && path.kind == RayKind::camera && storage) {
+      whiten_texture(scene.geometry().scene.materials[hit->material.index], *storage);
+    }
     if (path.passes_through(*hit, material.opacity)) {
       continue;
     }

@@ -29,6 +29,8 @@ struct PathSettings {
   // Paths go on only where a glossy lobe, a mirror or glass has drawn the direction: diffuse surfaces show what comes
   // to them from lights and environment alone.
   bool only_glossy = false;
+  // What the camera sees is shaded as if the texture of its base colour were white, where is_tinted().
+  bool white_textures = false;
 };
 
 struct PathRays {

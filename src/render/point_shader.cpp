@@ -21,6 +21,7 @@ PathSettings path_settings(const PreparedScene& scene, EdgePointShader kind) {
 
 PointShader make_point_shader(const EdgePointSettings& settings) {
   PointShader shader{settings.shader, settings.paths_per_point, settings.seed};
+  shader.white_textures = settings.sharp_textures;
   if (shader.paths == 0) {
     shader.paths = settings.shader == EdgePointShader::direct   ? kDirectPaths
                    : settings.shader == EdgePointShader::glossy ? kGlossyPaths
@@ -45,7 +46,8 @@ Rgb shade_pixel(const PreparedScene& scene, const CameraRays& camera, const Pixe
 
 ShadedPoint shade_point(const PreparedScene& scene, const CameraRays& camera,
                         const PointShader& shader, const PointRequest& request, PathRays& rays) {
-  const PathSettings settings = path_settings(scene, shader.kind);
+  PathSettings settings = path_settings(scene, shader.kind);
+  settings.white_textures = shader.white_textures;
   const auto first = request.frame * std::uint32_t(shader.paths);
   Sampler place(shader.seed, std::uint32_t(request.x), std::uint32_t(request.y), first);
   const Vec2f u = place.next_2d();

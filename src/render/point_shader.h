@@ -21,6 +21,7 @@ struct PointShader {
   EdgePointShader kind = EdgePointShader::gi;
   int paths = 1;
   std::uint32_t seed = 0;
+  bool white_textures = false;  // of points: their light without what they are painted with
 };
 
 // What the settings ask for.

@@ -33,6 +33,7 @@ void ShadeResults::append(const ShadeResults& other) {
   items += other.items;
   rays.total += other.rays.total;
   rays.rounded += other.rays.rounded;
+  thread_seconds += other.thread_seconds;
 }
 
 void shade_item(const ShadePlan& plan, const ShadePlan::Item& item, ShadeResults& results) {

@@ -28,6 +28,7 @@ struct ShadeResults {
   std::vector<ShadowTriple> triples;
   std::uint64_t items = 0;
   PathRays rays;
+  double thread_seconds = 0;  // that these took
 
   void append(const ShadeResults& other);
 };

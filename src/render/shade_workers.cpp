@@ -1,6 +1,7 @@
 #include "render/shade_workers.h"
 
 #include <algorithm>
+#include <chrono>
 #include <utility>
 
 #include "base/flush_denormals.h"
@@ -59,12 +60,15 @@ void ShadeWorkers::run() {
     }
     ShadeResults results;
     std::exception_ptr error;
+    const auto start = std::chrono::steady_clock::now();
     try {
       const std::size_t last = std::min(first + ShadePlan::kStep, plan->items.size());
       for (std::size_t i = first; i < last; ++i) shade_item(*plan, plan->items[i], results);
     } catch (...) {
       error = std::current_exception();
     }
+    results.thread_seconds =
+        std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     const std::lock_guard lock(mutex_);
     if (error) error_ = error;
     if (batches_.empty() || batches_.back().plan != plan) batches_.push_back({plan, {}});

@@ -26,6 +26,7 @@ class ShadeWorkers {
   ShadeWorkers& operator=(const ShadeWorkers&) = delete;
   ~ShadeWorkers();
 
+  [[nodiscard]] int thread_count() const { return int(threads_.size()); }
   void set_plan(std::shared_ptr<const ShadePlan> plan);
   void set_paused(bool paused);
 

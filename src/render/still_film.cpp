@@ -43,7 +43,8 @@ void StillFilm::blend_into(Image& picture, float interpolated_paths, int threads
       const Pixel& pixel = pixels_[i];
       if (pixel.paths == 0) continue;
       const float n = float(pixel.paths);
-      const float k = interpolated_paths / (1 + n / interpolated_paths);
+      const float k =
+          interpolated_paths > 0 ? interpolated_paths / (1 + n / interpolated_paths) : 0.0F;
       const float whole = 1 / (n + k);
       float* const out = picture.values.data() + 3 * i;
       out[0] = (out[0] * k + pixel.sum.x) * whole;

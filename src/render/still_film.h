@@ -26,7 +26,7 @@ class StillFilm {
   // Of the pixel with the fewest.
   [[nodiscard]] std::uint32_t least_paths() const;
 
-  // What is interpolated stands for so many paths at first.
+  // What is interpolated stands for so many paths at first; 0: where there are paths, they alone count.
   void blend_into(Image& picture, float interpolated_paths, int threads) const;
   // How much each pixel wants more paths, 1 to 255.
   void fill_wanted(std::span<std::uint8_t> wanted, int threads) const;

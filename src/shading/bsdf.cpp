@@ -142,4 +142,15 @@ Bsdf make_bsdf(const SurfaceMaterial& material, Vec3f wo_given, MediumSide side)
   return bsdf;
 }
 
+Rgb directional_albedo(const SurfaceMaterial& material, const Bsdf& bsdf) {
+  const GgxAlbedo specular = ggx_albedo(bsdf.wo.z, material.roughness);
+  Rgb albedo =
+      bsdf.diffuse * kPiF + bsdf.specular_f0 * specular.scale + bsdf.specular_f90 * specular.bias;
+  if (bsdf.coat > 0) {
+    const GgxAlbedo coat = ggx_albedo(bsdf.wo.z, material.clearcoat_roughness);
+    albedo += Rgb(bsdf.coat * (kCoatF0 * coat.scale + coat.bias));
+  }
+  return albedo;
+}
+
 }  // namespace arris

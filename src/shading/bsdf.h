@@ -58,6 +58,9 @@ struct Bsdf {
 // wo.z: raised to a small positive number if the shading normal turned away from wo.
 Bsdf make_bsdf(const SurfaceMaterial& material, Vec3f wo, MediumSide side = MediumSide::outside);
 
+// Reflected of light that comes evenly from all sides; without what glass lobes do. material: what `bsdf` is of.
+Rgb directional_albedo(const SurfaceMaterial& material, const Bsdf& bsdf);
+
 struct BsdfValue {
   Rgb value;  // f·|cos_i|
   float pdf = 0;

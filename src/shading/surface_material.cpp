@@ -147,6 +147,16 @@ SurfaceMaterial eval_material(const Material& material, std::span<const Texture>
   return s;
 }
 
+Rgb eval_base_color(const Material& material, std::span<const Texture> textures, Vec2f uv) {
+  if (!material.base_color_texture) return material.base_color;
+  return material.base_color * rgb(eval_texture(textures[material.base_color_texture->index], uv));
+}
+
+bool can_be_tinted(const Material& material) {
+  return material.base_color_texture && material.transmission == 0 &&
+         !(max_component(material.emission) > 0);
+}
+
 float eval_opacity(const Material& material, std::span<const Texture> textures, Vec2f uv) {
   float opacity = material.opacity;
   if (material.base_color_texture) {

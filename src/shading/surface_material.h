@@ -41,6 +41,18 @@ bool has_textures(const Material& material);
 SurfaceMaterial eval_material(const Material& material, std::span<const Texture> textures,
                               Vec2f uv);
 
+// Base colour alone.
+Rgb eval_base_color(const Material& material, std::span<const Texture> textures, Vec2f uv);
+
+// Light that a surface reflects can be told apart from its base colour's texture: it has one, and at no place emits or
+// transmits.
+bool can_be_tinted(const Material& material);
+// And at this place is opaque. shown: the material there.
+inline bool is_tinted(const Material& material, const SurfaceMaterial& shown) {
+  constexpr float kOpaque = 0.999F;  // interpolated opacities are 1 to their rounding
+  return can_be_tinted(material) && shown.opacity > kOpaque;
+}
+
 // Opacity alone, for shadow rays and for hits that may be passed.
 float eval_opacity(const Material& material, std::span<const Texture> textures, Vec2f uv);
 

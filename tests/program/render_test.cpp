@@ -486,6 +486,18 @@ TEST(Frames, are_made_of_edges_and_points_too) {
   EXPECT_TRUE(place.read("f_2.png") == place.read("g_2.png"));
 }
 
+TEST(Frames, that_are_cheap_are_traced_and_say_so) {
+  const Workplace place;
+  test::write_text(place / "moving.toml", kMoving);
+  const std::string options =
+      "render moving.toml --size 20x16 --integrator edge-point --frames 0..2 -o f_#.png ";
+  const Outcome run = place.arris(options + "--stats s.json");
+  ASSERT_EQ(run.code, 0) << run.err;
+  EXPECT_THAT(run.err, HasSubstr("f_1.png: 20 x 16 pixels, every pixel traced, "));
+  EXPECT_EQ(nlohmann::json::parse(place.read("s.json"))["edge_point"]["traced"], 2);
+  EXPECT_THAT(place.arris(options + "--trace-below 0").err, HasSubstr(" new points of "));
+}
+
 TEST(Render, of_edges_and_points_stands_still_until_each_pixel_has_its_paths) {
   const Workplace place;
   const Outcome run =

@@ -100,6 +100,9 @@ INSTANTIATE_TEST_SUITE_P(
         Misuse{"render cube.stl -o f_#.png --frames 0..2 --integrator edge-point --spp 4",
                "--spp: can't be used with the frames of --integrator edge-point; --density says "
                "how much is shaded for each\n"},
+        Misuse{"render cube.stl -o a.png --integrator edge-point --trace-below 5",
+               "--trace-below: needs --frames: a view that stands still goes over to paths by "
+               "itself\n"},
         Misuse{"render cube.stl -o a.png --density 0.1",
                "--density: needs --integrator edge-point\n"},
         Misuse{"render cube.stl -o a.png --integrator edge-point --density 0", "--density: "},

@@ -3,9 +3,12 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
+#include <cstdint>
 #include <memory>
 #include <thread>
+#include <utility>
 #include <vector>
 
 #include "arris/error.h"
@@ -202,6 +205,143 @@ TEST(EdgePoint, shading_goes_on_beside_frames) {
   }
   EXPECT_GT(points, 0U);
   EXPECT_GT(engine.stats().points, 0U);
+}
+
+// A floor of black and white texels, each about four pixels wide, beneath the boxes, and a box that is painted too.
+Scene make_checkered_scene(int size_px) {
+  Scene scene = make_scene(size_px);
+  Texture checker;
+  checker.width_px = checker.height_px = 96;
+  for (int i = 0; i < 96 * 96; ++i) {
+    const bool white = (i % 96 + i / 96) % 2 == 0;
+    checker.texels.push_back(white ? std::array<std::uint8_t, 4>{255, 230, 200, 255}
+                                   : std::array<std::uint8_t, 4>{0, 10, 40, 255});
+  }
+  scene.textures.push_back(std::move(checker));
+  Material floor = scene.materials[0];
+  floor.base_color = Rgb(0.8F);
+  floor.base_color_texture = TextureId{0};
+  scene.materials[0] = floor;
+  return scene;
+}
+
+struct TextureErrors {
+  double sharp = 0, blurred = 0;
+};
+
+TextureErrors texture_errors(const Scene& described) {
+  const auto scene = prepare_scene(described);
+  const Image reference = path_picture(scene, 128);
+  TextureErrors errors;
+  for (const bool sharp : {true, false}) {
+    EdgePointSettings settings = synchronous();
+    settings.paths_per_point = 32;
+    settings.sharp_textures = sharp;
+    EdgePointEngine engine(scene, settings);
+    Camera camera = *scene_of(*scene).camera;
+    const Vec3d end = camera.position;
+    for (int i = 4; i >= 0; --i) {
+      camera.position = end + Vec3d{0.03 * i, 0, 0};
+      engine.set_camera(camera);
+      engine.next_frame();
+    }
+    (sharp ? errors.sharp : errors.blurred) = rmse(engine.next_frame(), reference);
+  }
+  return errors;
+}
+
+// Texels stay sharp between points that are five times as far apart.
+TEST(EdgePoint, textures_are_as_sharp_as_pixels) {
+  const TextureErrors errors = texture_errors(make_checkered_scene(96));
+  EXPECT_LT(errors.sharp, 0.35 * errors.blurred) << errors.sharp << " and " << errors.blurred;
+}
+
+TEST(EdgePoint, textures_of_glossy_surfaces_are_sharp_beneath_their_reflections) {
+  Scene scene = make_checkered_scene(96);
+  scene.materials[0].glossy_mix.reset();
+  scene.materials[0].roughness = 0.4F;
+  const TextureErrors errors = texture_errors(scene);
+  EXPECT_LT(errors.sharp, 0.4 * errors.blurred) << errors.sharp << " and " << errors.blurred;
+}
+
+TEST(EdgePoint, without_textures_points_keep_their_colours) {
+  const auto scene = prepare_scene(make_scene(48));
+  std::vector<Image> pictures;
+  for (const bool sharp : {true, false}) {
+    EdgePointSettings settings = synchronous();
+    settings.sharp_textures = sharp;
+    EdgePointEngine engine(scene, settings);
+    engine.next_frame();
+    pictures.push_back(engine.next_frame());
+  }
+  EXPECT_EQ(pictures[0].values, pictures[1].values);
+}
+
+TEST(EdgePoint, a_still_view_of_a_texture_converges_to_the_path_traced_picture) {
+  const auto scene = prepare_scene(make_checkered_scene(24));
+  EdgePointSettings settings = synchronous();
+  settings.density = 1;
+  EdgePointEngine engine(scene, settings);
+  const Image* picture = &engine.next_frame();
+  while (engine.stats().still_paths < 256) picture = &engine.next_frame();
+  const Image reference = path_picture(scene, 1024);
+  EXPECT_LT(rmse(*picture, reference), 1.5 * rmse(path_picture(scene, 256), reference));
+}
+
+TEST(EdgePoint, cheap_frames_are_traced) {
+  const auto scene = prepare_scene(make_scene(40));
+  EdgePointSettings settings = synchronous();
+  settings.trace_below_ms = 1e6;
+  settings.paths_per_point = 8;
+  EdgePointEngine engine(scene, settings);
+  Camera camera = *scene_of(*scene).camera;
+  const Vec3d end = camera.position;
+  for (int i = 1; i >= 0; --i) {
+    camera.position = end + Vec3d{0.03 * i, 0, 0};
+    engine.set_camera(camera);
+    const Image& frame = engine.next_frame();
+    EXPECT_TRUE(engine.stats().traced);
+    if (i == 0) EXPECT_LT(rmse(frame, path_picture(scene, 8)), 1e-6);
+  }
+  // Paths add up while the view stands still.
+  EXPECT_LT(rmse(engine.next_frame(), path_picture(scene, 16)), 1e-6);
+}
+
+TEST(EdgePoint, dear_frames_are_not_traced) {
+  const auto scene = prepare_scene(make_scene(40));
+  std::vector<Image> pictures;
+  for (const double below_ms : {0.0, 1.0}) {
+    EdgePointSettings settings = synchronous();
+    settings.trace_below_ms = below_ms;
+    EdgePointEngine engine(scene, settings);
+    engine.next_frame();
+    pictures.push_back(engine.next_frame());
+    EXPECT_FALSE(engine.stats().traced);
+  }
+  EXPECT_EQ(pictures[0].values, pictures[1].values);
+}
+
+TEST(EdgePoint, what_shading_costs_decides_beside_frames_too) {
+  EdgePointSettings settings;
+  settings.trace_below_ms = 1e9;
+  EdgePointEngine engine(prepare_scene(make_scene(24)), settings);
+  while (!engine.stats().traced) {
+    engine.next_frame();
+    std::this_thread::yield();
+  }
+  EXPECT_EQ(engine.stats().edges.silhouette, 0U);
+}
+
+TEST(EdgePoint, bad_settings_and_cameras_are_errors) {
+  const auto scene = prepare_scene(make_scene(24));
+  EdgePointSettings settings = synchronous();
+  settings.density = 0;
+  EXPECT_THROW(EdgePointEngine(scene, settings), Error);
+  EdgePointEngine engine(scene, synchronous());
+  Camera camera = *scene_of(*scene).camera;
+  camera.target = camera.position;
+  engine.set_camera(camera);
+  EXPECT_THROW(engine.next_frame(), Error);
 }
 
 }  // namespace

@@ -1,0 +1,55 @@
+// texture_tints.h — the tints of a picture's pixels, from one ray each
+// What       A ray through the primary region of every pixel within reach of a point on a textured object finds what
+//            is seen there; its texture is averaged over the pixel's filter along the surface's plane. The tint is the
+//            ratio of directional albedos, with the texture and without it, so that what a coat or a plastic's surface
+//            reflects keeps its colour.
+// Guarantee  what is kept of the frames before is what would be found again
+// Limits     only base colours: other textures, and base colours of surfaces that transmit, emit or let light through
+//            in parts, are interpolated with the light
+// Cost       a ray and 1 to 64 texture lookups a pixel, in a view that moves
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "edgepoint/edge_point_image.h"
+#include "edgepoint/point_cache.h"
+#include "edgepoint/tint_image.h"
+#include "render/camera.h"
+#include "render/pixel_filter.h"
+#include "render/prepared_scene.h"
+
+namespace arris {
+
+// By object: whether a material of it has a texture that tints.
+std::vector<bool> find_tinted_objects(const Scene& scene);
+
+// With the texture, over without it, of what a ray through a place of the picture sees; nothing if that has none.
+std::optional<Rgb> find_tint(const PreparedScene& scene, const CameraRays& camera,
+                             const PixelFilter& filter, Vec2f place);
+
+class TextureTints {
+ public:
+  explicit TextureTints(const Scene& scene);
+
+  // Camera or scene have changed.
+  void clear();
+  // Null if no object can be tinted.
+  const TintImage* update(const PreparedScene& scene, const CameraRays& camera,
+                          const PointCache& cache, const EdgePointImage& image, int threads);
+
+ private:
+  void mark_points(const PointCache& cache, const EdgePointImage& image, int y);
+  void tint_row(const PreparedScene& scene, const CameraRays& camera, const EdgePointImage& image,
+                int y);
+
+  PixelFilter filter_;
+  std::vector<bool> objects_;  // empty: none is
+  BitPlane marked_;            // pixels with a point on such an object
+  TintImage tints_;
+  // Where a pixel was looked at, as primary_place() says; kNotYet: nowhere.
+  std::vector<std::uint8_t> looked_;
+};
+
+}  // namespace arris
