@@ -235,7 +235,7 @@ std::optional<Rgb> region_color(const Subpixels& s, const Matrices& matrices, in
 Rgb reconstruct_complex_pixel(const EdgePointImage& image, int x, int y, ColorRows& samples,
                               Rgb fallback) {
   const Subpixels s = Builder(image, x, y, samples).build();
-  const Matrices matrices = find_matrices(s);
+  const Matrices matrices = s.sample_count > 0 ? find_matrices(s) : Matrices{};
   Rgb sum;
   for (int k = 0; k < 4; ++k) {
     const int bit = bit_of(2 + k % 2, 2 + k / 2);
