@@ -89,6 +89,7 @@ class Builder {
       }
       add_samples(j, is_sample);
     }
+    for (Word& corner : out_.primary) corner |= empty_;
     return out_;
   }
 
@@ -104,15 +105,20 @@ class Builder {
     const auto sample_at = std::size_t(6 * point_row) + std::size_t(i);
     const int bit = bit_of(2 * i, 2 * j);
     if (!lines.any()) {
-      constexpr Word kAll = Word{3} | Word{3} << unsigned(kRow);
-      for (Word& corner : out_.primary) corner |= kAll << unsigned(bit);
+      empty_ |= (Word{3} | Word{3} << unsigned(kRow)) << unsigned(bit);
       is_sample[sample_at] = !point.is_none();
       return;
     }
     for (unsigned k = 0; k < 4; ++k) {
       const unsigned column = k % 2, row = k / 2;
-      PixelCode code(classify_boundary(lines.boundary(column, row)));
+      const std::uint32_t boundary = lines.boundary(column, row);
       const bool has_point = !point.is_none() && point_column == column && point_row == row;
+      if (boundary == 0) {
+        empty_ |= Word{1} << unsigned(bit + bit_of(int(column), int(row)));
+        if (has_point) is_sample[sample_at] = true;
+        continue;
+      }
+      PixelCode code(classify_boundary(boundary));
       const RegionOf region = has_point ? region_of(code, point.cell()) : RegionOf::ambiguous;
       if (code.is_simple()) {
         code.set_primary(region == RegionOf::ambiguous ? tables_.area_a[code.edge()] > 0.5F
@@ -124,12 +130,11 @@ class Builder {
     }
   }
 
+  // Of a subpixel that edges cross.
   void add_corners(PixelCode code, int bit) {
     if (code.is_complex()) return;
-    std::uint32_t in_primary = 15;
-    if (code.is_simple()) {
-      in_primary = tables_.corners_a[code.edge()] ^ (code.primary_is_a() ? 0U : 15U);
-    }
+    const std::uint32_t in_primary =
+        tables_.corners_a[code.edge()] ^ (code.primary_is_a() ? 0U : 15U);
     for (unsigned k = 0; k < 4; ++k) {
       const Word is_primary = in_primary >> k & 1U;
       out_.primary[k] |= is_primary << unsigned(bit);
@@ -152,9 +157,8 @@ class Builder {
     }
   }
 
-  // Of a point that lies in the subpixel, to a quarter of it: each quarter is four cells of the tables.
+  // Of a point that lies in a subpixel that edges cross, to a quarter of it: each quarter is four cells of the tables.
   [[nodiscard]] RegionOf region_of(PixelCode code, std::uint32_t cell) const {
-    if (code.is_empty()) return RegionOf::b;
     if (code.is_complex()) return RegionOf::ambiguous;
     const std::uint32_t first = 8 * (cell / 4 % 2) + 2 * (cell % 2);
     const RegionOf region = tables_.region_of(code.edge(), first);
@@ -168,6 +172,7 @@ class Builder {
   int x_, y_;
   ColorRows& samples_;
   const EdgeTables& tables_ = edge_tables();
+  Word empty_ = 0;  // subpixels without edges: all their corners are of their primary region
   Subpixels out_;
 };
 
