@@ -57,6 +57,7 @@ nlohmann::ordered_json edge_point_json(const std::vector<EdgePointStats>& all, d
   json["stages_ms"] = {{"edges", stage(&Stages::edges)},
                        {"raster", stage(&Stages::raster)},
                        {"points", stage(&Stages::points)},
+                       {"classify", stage(&Stages::classify)},
                        {"reachability", stage(&Stages::reachability)},
                        {"interpolation", stage(&Stages::interpolation)},
                        {"antialias", stage(&Stages::antialias)},

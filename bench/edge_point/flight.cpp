@@ -73,6 +73,7 @@ EdgePointStats median_of(const std::vector<EdgePointStats>& frames) {
   out.stages.edges = of([](const S& s) { return s.stages.edges; });
   out.stages.raster = of([](const S& s) { return s.stages.raster; });
   out.stages.points = of([](const S& s) { return s.stages.points; });
+  out.stages.classify = of([](const S& s) { return s.stages.classify; });
   out.stages.reachability = of([](const S& s) { return s.stages.reachability; });
   out.stages.interpolation = of([](const S& s) { return s.stages.interpolation; });
   out.stages.antialias = of([](const S& s) { return s.stages.antialias; });

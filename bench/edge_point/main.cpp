@@ -57,7 +57,8 @@ void print_frames(const Arguments& arguments) {
     say(fmt::format(
         "\n{} x {} pixels, milliseconds, medians of {} frames, {:.1f}% of pixels shaded a frame",
         options.width_px, options.height_px, options.frames, 100 * options.density));
-    say("scene     triangles shader  edges raster points reach interp  anti complex  total longest "
+    say("scene     triangles shader  edges raster points class reach interp  anti complex  total "
+        "longest "
         "|"
         " new/px full ms speed-up | silh. sharp shadow | empty simple complex | bytes/px  cache | "
         "scene, trees");
@@ -66,11 +67,12 @@ void print_frames(const Arguments& arguments) {
       const auto& s = c.median.stages;
       const double pixels = double(options.width_px) * options.height_px;
       say(fmt::format(
-          "{:10}{:9} {:6} {:6.2f} {:6.2f} {:6.2f} {:5.2f} {:6.2f} {:5.2f} {:7.2f} {:6.2f} {:7.2f} "
+          "{:10}{:9} {:6} {:6.2f} {:6.2f} {:6.2f} {:5.2f} {:5.2f} {:6.2f} {:5.2f} {:7.2f} {:6.2f} "
+          "{:7.2f} "
           "| "
           "1/{:<4.0f} {:7.0f} {:8.1f} | {:5} {:5} {:6} | {:4.1f}% {:5.1f}% {:6.2f}% | {:8.1f} "
           "{:4.0f} MB | {:.0f}, {:.0f} ms",
-          scene.name, c.triangles, name_of(scene.shader), s.edges, s.raster, s.points,
+          scene.name, c.triangles, name_of(scene.shader), s.edges, s.raster, s.points, s.classify,
           s.reachability, s.interpolation, s.antialias, s.complex, s.total, c.longest_ms,
           pixels / double(c.median.new_points), c.full_ms, c.full_ms / (s.total + c.shading_ms),
           c.median.edges.silhouette, c.median.edges.sharp, c.median.edges.shadow,

@@ -87,6 +87,7 @@ class Builder {
         add_pixel(i, j);
       }
     }
+    for (Word& corner : out_.primary) corner |= empty_;
     return out_;
   }
 
@@ -100,38 +101,42 @@ class Builder {
     const unsigned point_column = point.cell() % 4 / 2, point_row = point.cell() / 8;
     const int bit = bit_of(2 * i, 2 * j);
     if (!lines.any()) {
-      constexpr Word kAll = Word{3} | Word{3} << unsigned(kRow);
-      for (Word& corner : out_.primary) corner |= kAll << unsigned(bit);
+      empty_ |= (Word{3} | Word{3} << unsigned(kRow)) << unsigned(bit);
       for (const int at : {bit, bit + 1, bit + kRow, bit + kRow + 1}) set_primary(at, px, py);
       if (!point.is_none()) set_sample(bit + bit_of(int(point_column), int(point_row)), px, py);
       return;
     }
     for (unsigned k = 0; k < 4; ++k) {
       const unsigned column = k % 2, row = k / 2;
-      PixelCode code(classify_boundary(lines.boundary(column, row)));
+      const int at = bit + bit_of(int(column), int(row));
+      const std::uint32_t boundary = lines.boundary(column, row);
       const bool has_point = !point.is_none() && point_column == column && point_row == row;
+      if (boundary == 0) {
+        empty_ |= Word{1} << unsigned(at);
+        if (has_point) {
+          set_sample(at, px, py);
+        } else if (lies_in_primary(px, py, column, row)) {
+          set_primary(at, px, py);
+        }
+        continue;
+      }
+      PixelCode code(classify_boundary(boundary));
       const RegionOf region = has_point ? region_of(code, point.cell()) : RegionOf::ambiguous;
       if (code.is_simple()) {
         code.set_primary(region == RegionOf::ambiguous ? tables_.area_a[code.edge()] > 0.5F
                                                        : region == RegionOf::a);
       }
-      const int at = bit + bit_of(int(column), int(row));
-      if (region != RegionOf::ambiguous) {
-        set_sample(at, px, py);
-      } else if (code.is_empty() && lies_in_primary(px, py, column, row)) {
-        set_primary(at, px, py);
-      }
+      if (region != RegionOf::ambiguous) set_sample(at, px, py);
       if (i == 1 && j == 1) out_.middle[k] = code;
       add_corners(code, at);
     }
   }
 
+  // Of a subpixel that edges cross.
   void add_corners(PixelCode code, int bit) {
     if (code.is_complex()) return;
-    std::uint32_t in_primary = 15;
-    if (code.is_simple()) {
-      in_primary = tables_.corners_a[code.edge()] ^ (code.primary_is_a() ? 0U : 15U);
-    }
+    const std::uint32_t in_primary =
+        tables_.corners_a[code.edge()] ^ (code.primary_is_a() ? 0U : 15U);
     for (unsigned k = 0; k < 4; ++k) {
       const Word is_primary = in_primary >> k & 1U;
       out_.primary[k] |= is_primary << unsigned(bit);
@@ -168,9 +173,8 @@ class Builder {
     return true;
   }
 
-  // Of a point that lies in the subpixel, to a quarter of it: each quarter is four cells of the tables.
+  // Of a point that lies in a subpixel that edges cross, to a quarter of it: each quarter is four cells of the tables.
   [[nodiscard]] RegionOf region_of(PixelCode code, std::uint32_t cell) const {
-    if (code.is_empty()) return RegionOf::b;
     if (code.is_complex()) return RegionOf::ambiguous;
     const std::uint32_t first = 8 * (cell / 4 % 2) + 2 * (cell % 2);
     const RegionOf region = tables_.region_of(code.edge(), first);
@@ -184,6 +188,7 @@ class Builder {
   int x_, y_;
   const ComplexPixelColors& colors_;
   const EdgeTables& tables_ = edge_tables();
+  Word empty_ = 0;  // subpixels without edges: all their corners are of their primary region
   Subpixels out_;
 };
 
@@ -237,7 +242,7 @@ Rgb reconstruct_complex_pixel(const EdgePointImage& image, int x, int y,
                               const ComplexPixelColors& colors) {
   const Subpixels s = Builder(image, x, y, colors).build();
   const Rgb fallback = colors.fallback;
-  const Matrices matrices = find_matrices(s);
+  const Matrices matrices = s.known != 0 ? find_matrices(s) : Matrices{};
   Rgb sum;
   for (int k = 0; k < 4; ++k) {
     const int bit = bit_of(2 + k % 2, 2 + k / 2);

@@ -144,6 +144,7 @@ FrameReport FrameMaker::make(const PixelView& view, const FrameEdges& edges, Poi
   parallel_for(bands_.size(), parallel,
                [&](std::size_t i) { classes[i] = classify_pixels(bands_[i], image_); });
   for (const PixelClasses& c : classes) report.classes += c;
+  report.times.classify = watch.lap();
   parallel_for(bands_.size(), parallel,
                [&](std::size_t i) { find_reach(image_.corners, bands_[i], image_.reach); });
   report.times.reachability = watch.lap();

@@ -60,6 +60,9 @@ bool is_textured(const Scene& scene, const Object& object) {
   return textured(object.material) || std::any_of(own.begin(), own.end(), textured);
 }
 
+// Edges of a mesh that are put into the world at a time.
+constexpr std::size_t kEdgeChunk = 4096;
+
 // Roundings of less than so many pixels' radius are seen as edges.
 constexpr double kSeenRadius = 0.75;
 
@@ -269,21 +272,24 @@ std::vector<std::vector<WorldEdge>> EdgeObjects::find_edges(const PreparedScene&
     std::vector<WorldEdge> edges;
     std::uint64_t sharp = 0;
   };
+  // Of one object, by chunks of its mesh's edges.
+  using Chunks = std::vector<Found>;
   const Scene& scene = prepared.scene();
   const RoundedView rounded_view = make_rounded_view(view);
-  std::vector<Found> found(objects_.size());
+  std::vector<Chunks> found(objects_.size(), Chunks(1));
   parallel_for(objects_.size(), {.grain = 1, .threads = threads}, [&](std::size_t i) {
     const Affine3d& world = scene.objects[i].world_from_object;
     if (objects_[i].solid) {
       const CsgEdges::Found of_solid =
           objects_[i].solid->find(transform_point(inverse(world), view.eye), threads);
+      Found& first = found[i].front();
       const auto add = [&](const CsgEdges::Segment& s) {
-        found[i].edges.push_back(
+        first.edges.push_back(
             {Vec3f(transform_point(world, s.a)), Vec3f(transform_point(world, s.b))});
       };
       std::ranges::for_each(of_solid.sharp, add);
       std::ranges::for_each(of_solid.silhouette, add);
-      found[i].sharp = of_solid.sharp.size();
+      first.sharp = of_solid.sharp.size();
     }
     if (!objects_[i].mesh) return;
     const MeshEdges& object = *objects_[i].mesh;
@@ -292,7 +298,8 @@ std::vector<std::vector<WorldEdge>> EdgeObjects::find_edges(const PreparedScene&
       rounding = &prepared.rounding().geometries[objects_[i].geometry];
     }
     const double radius = rounding == nullptr ? 0 : world_radius(*rounding);
-    for (const std::uint32_t e : object.find(transform_point(inverse(world), view.eye))) {
+    const std::vector<std::uint32_t> seen = object.find(transform_point(inverse(world), view.eye));
+    const auto add = [&](std::uint32_t e, Found& out) {
       const MeshEdge& edge = object.mesh.edges[e];
       const auto end = [&](std::uint32_t v) {
         return transform_point(world, Vec3d(object.mesh.vertices[v]));
@@ -300,21 +307,33 @@ std::vector<std::vector<WorldEdge>> EdgeObjects::find_edges(const PreparedScene&
       Vec3d a = end(edge.v0), b = end(edge.v1);
       const RoundedEdge rounded = rounding == nullptr ? RoundedEdge::no : objects_[i].rounded[e];
       if (rounded != RoundedEdge::no && is_seen_rounded(rounded_view, radius, (a + b) * 0.5)) {
-        if (rounded == RoundedEdge::yes) continue;
+        if (rounded == RoundedEdge::yes) return;
         // From within the solid the edge lies behind the surface that shows it.
         a += normalize(view.eye - a) * (2 * radius);
         b += normalize(view.eye - b) * (2 * radius);
       }
-      found[i].edges.push_back({Vec3f(a), Vec3f(b)});
-      found[i].sharp += object.mesh.is_sharp(e) ? 1 : 0;
+      out.edges.push_back({Vec3f(a), Vec3f(b)});
+      out.sharp += object.mesh.is_sharp(e) ? 1 : 0;
+    };
+    const std::size_t chunks =
+        std::max<std::size_t>(1, (seen.size() + kEdgeChunk - 1) / kEdgeChunk);
+    found[i].resize(chunks);
+    parallel_for(chunks, {.grain = 1, .threads = threads}, [&](std::size_t c) {
+      const std::size_t last = std::min(seen.size(), (c + 1) * kEdgeChunk);
+      found[i][c].edges.reserve(last - c * kEdgeChunk);
+      for (std::size_t k = c * kEdgeChunk; k < last; ++k) add(seen[k], found[i][c]);
+    });
+    if (rounding != nullptr) {
+      find_rounded_outline(*rounding, rounded_view, found[i].front().edges);
     }
-    if (rounding != nullptr) find_rounded_outline(*rounding, rounded_view, found[i].edges);
   });
   std::vector<std::vector<WorldEdge>> edges(1);
-  for (Found& f : found) {
-    totals.sharp += f.sharp;
-    totals.silhouette += f.edges.size() - f.sharp;
-    if (!f.edges.empty()) edges.push_back(std::move(f.edges));
+  for (Chunks& chunks : found) {
+    for (Found& f : chunks) {
+      totals.sharp += f.sharp;
+      totals.silhouette += f.edges.size() - f.sharp;
+      if (!f.edges.empty()) edges.push_back(std::move(f.edges));
+    }
   }
   add_light_outlines(scene, view.eye, edges.front(), totals);
   return edges;

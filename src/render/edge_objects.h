@@ -39,8 +39,8 @@ class EdgeObjects {
   EdgeObjects(const PreparedScene& prepared, int threads);
   ~EdgeObjects();
 
-  // In the world, in lists: those of lights, then each object's. The scene is the one this was made of, or one whose
-  // objects, camera and lights have moved since.
+  // In the world, in lists: those of lights, then those of the objects. The scene is the one this was made of, or one
+  // whose objects, camera and lights have moved since.
   std::vector<std::vector<WorldEdge>> find_edges(const PreparedScene& prepared,
                                                  const PixelView& view, int threads,
                                                  EdgeTotals& totals) const;

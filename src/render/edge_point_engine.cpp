@@ -365,6 +365,7 @@ void EdgePointEngine::Impl::keep_report(const FrameReport& report, const EdgeTot
   EdgePointStats::Stages& stages = stats_.stages;
   stages.points = report.times.points;
   stages.raster = report.times.raster;
+  stages.classify = report.times.classify;
   stages.reachability = report.times.reachability;
   stages.interpolation = report.times.interpolation;
   stages.antialias = report.times.antialias;
