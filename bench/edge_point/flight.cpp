@@ -1,6 +1,7 @@
 #include "edge_point/flight.h"
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <cmath>
 #include <cstddef>
@@ -8,6 +9,7 @@
 
 #include "base/parallel_for.h"
 #include "image/compare.h"
+#include "image/srgb.h"
 #include "render/point_shader.h"
 
 namespace arris::bench {
@@ -83,14 +85,20 @@ EdgePointStats median_of(const std::vector<EdgePointStats>& frames) {
   return out;
 }
 
-Image reference_of(const FlightScene& flight, const std::shared_ptr<const PreparedScene>& scene,
-                   const Camera& camera, std::uint32_t paths) {
+// Two pictures with noise of their own.
+struct Reference {
+  std::array<Image, 2> halves;
+  Image mean;
+};
+
+Image reference_half(const FlightScene& flight, const std::shared_ptr<const PreparedScene>& scene,
+                     const Camera& camera, std::uint32_t paths, std::uint32_t seed) {
   const ImageSettings& image = scene->scene().image;
   const CameraRays rays = make_camera_rays(camera, image);
   const PixelFilter filter(image.filter);
   PointShader shader;
   shader.kind = flight.shader;
-  shader.seed = 77;  // other paths than those that are judged
+  shader.seed = seed;
   Image out(image.width_px, image.height_px, 3);
   parallel_for(
       static_cast<std::size_t>(image.height_px), {.grain = 1, .threads = 0}, [&](std::size_t y) {
@@ -102,6 +110,31 @@ Image reference_of(const FlightScene& flight, const std::shared_ptr<const Prepar
         }
       });
   return out;
+}
+
+Reference reference_of(const FlightScene& flight, const std::shared_ptr<const PreparedScene>& scene,
+                       const Camera& camera, std::uint32_t paths) {
+  // Other paths than those that are judged.
+  constexpr std::uint32_t kSeed = 77;
+  Reference r{{reference_half(flight, scene, camera, paths, kSeed),
+               reference_half(flight, scene, camera, paths, kSeed + 1)},
+              {}};
+  r.mean = r.halves[0];
+  for (std::size_t i = 0; i < r.mean.values.size(); ++i) {
+    r.mean.values[i] = (r.halves[0].values[i] + r.halves[1].values[i]) / 2;
+  }
+  return r;
+}
+
+// Of display values.
+double rmse_against(const Image& picture, const Reference& reference) {
+  const auto shown = [](float v) { return double(srgb_from_linear(std::clamp(v, 0.0F, 1.0F))); };
+  double sum = 0;
+  for (std::size_t i = 0; i < picture.values.size(); ++i) {
+    const double p = shown(picture.values[i]);
+    sum += (p - shown(reference.halves[0].values[i])) * (p - shown(reference.halves[1].values[i]));
+  }
+  return std::sqrt(std::max(0.0, sum / double(picture.values.size())));
 }
 
 // A picture of one path for each pixel of a grid so coarse that it costs as much as the points of a frame.
@@ -137,10 +170,9 @@ Image noisy_picture(const FlightScene& flight, const std::shared_ptr<const Prepa
 struct Errors {
   std::vector<double> rmse, flip;
 
-  void add(const Image& picture, const Image& reference) {
-    const ImageDifference difference = compare_images(picture, reference, ValueEncoding::srgb);
-    rmse.push_back(difference.rmse);
-    flip.push_back(difference.flip);
+  void add(const Image& picture, const Reference& reference) {
+    rmse.push_back(rmse_against(picture, reference));
+    flip.push_back(compare_images(picture, reference.mean, ValueEncoding::srgb).flip);
   }
   [[nodiscard]] static double mean(const std::vector<double>& values) {
     double sum = 0;
@@ -190,7 +222,7 @@ FlightErrors measure_quality(const FlightScene& flight, const QualityOptions& op
       engine.set_camera(camera);
       const Image& picture = engine.next_frame();
       if (i % (options.flight.frames / options.pictures) != 0) continue;
-      const Image reference = reference_of(flight, scene, camera, options.reference_paths);
+      const Reference reference = reference_of(flight, scene, camera, options.reference_paths);
       (edges ? with : without).add(picture, reference);
       if (!edges) continue;
       const double paths = options.flight.density * make_point_shader(settings).paths;
@@ -204,14 +236,14 @@ FlightErrors measure_quality(const FlightScene& flight, const QualityOptions& op
 FlightErrors measure_ablation(const FlightScene& flight, const QualityOptions& options) {
   const auto scene = prepare(flight, options.flight);
   const Camera camera = flight_camera(flight, 0);
-  const Image reference = reference_of(flight, scene, camera, options.reference_paths);
+  const Reference reference = reference_of(flight, scene, camera, options.reference_paths);
   Errors with, without;
   for (const bool edges : {true, false}) {
     EdgePointSettings settings = settings_for(flight, options.flight);
     settings.use_edges = edges;
     settings.first_density = 0.2;
     settings.density = 1e-3;
-    settings.paths_per_point = 64;
+    settings.paths_per_point = options.point_paths;
     EdgePointEngine engine(scene, settings);
     // What casts shadows is known once the first points are there.
     engine.next_frame();

@@ -1,8 +1,10 @@
 // flight.h — what frames of a camera flight cost, and how good they are
 // What       measure_frames(): medians of the stages, as in the paper's Table 2, its numbers of edges and classes of
 //            Table 3, memory, and the time that tracing every pixel with the same shader takes. measure_quality():
-//            errors against a converged reference of the same frames, with edges, without them, and of a picture of
-//            full size that costs as much shading but is not interpolated.
+//            errors of the same frames with edges, without them, and of a picture of full size that costs as much
+//            shading but is not interpolated.
+// How        Errors are against two independent references of few paths: the mean of (p − a)(p − b) has no part of their
+//            noise in it, where that of (p − a)² has, so that it is the error against a converged picture.
 // Source     Bala, Walter, Greenberg (2003), §7
 #pragma once
 
@@ -32,11 +34,11 @@ struct FlightErrors {
   double with_edges = 0, without_edges = 0, noisy = 0;  // RMSE of tone mapped values
   double flip_with = 0, flip_without = 0, flip_noisy = 0;
 };
-// reference_paths: of each pixel of the reference pictures, of which there are `pictures`.
 struct QualityOptions {
   FlightOptions flight;
-  int pictures = 3;
-  std::uint32_t reference_paths = 256;
+  int pictures = 3;                    // of the flight that are judged
+  std::uint32_t reference_paths = 64;  // of each pixel, of each of a picture's two references
+  int point_paths = 256;               // of measure_ablation()
 };
 FlightErrors measure_quality(const FlightScene& flight, const QualityOptions& options);
 

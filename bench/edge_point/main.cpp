@@ -86,10 +86,12 @@ void print_frames(const Arguments& arguments) {
 
 void print_errors(const char* title, const Arguments& arguments,
                   FlightErrors (*measure)(const FlightScene&, const QualityOptions&)) {
-  say(fmt::format("\n{}: RMSE (FLIP) of display values", title));
+  const QualityOptions& q = arguments.quality;
+  say(fmt::format("\n{}, {} x {}: RMSE (FLIP) of display values", title, q.flight.width_px,
+                  q.flight.height_px));
   say("scene      with edges        without edges     not interpolated  with / without");
   for (const FlightScene& scene : make_scenes(arguments)) {
-    const FlightErrors e = measure(scene, arguments.quality);
+    const FlightErrors e = measure(scene, q);
     const std::string noisy =
         e.noisy > 0 ? fmt::format("{:.4f} ({:.4f})", e.noisy, e.flip_noisy) : "-";
     say(fmt::format("{:10} {:.4f} ({:.4f})   {:.4f} ({:.4f})   {:17} {:.2f}", scene.name,
@@ -124,18 +126,21 @@ int main(int argc, char** argv) {
   app.add_option("--sizes", arguments.sizes, "of frames")->delimiter(',');
   app.add_option("--frames", arguments.flight.frames, "of each flight");
   app.add_option("--density", arguments.flight.density, "parts of the pixels shaded a frame");
-  app.add_option("--reference-paths", arguments.quality.reference_paths, "of each pixel");
+  app.add_option("--reference-paths", arguments.quality.reference_paths, "of each pixel, twice");
+  app.add_option("--point-paths", arguments.quality.point_paths, "of each point of the ablation");
+  int quality_size = 512;
+  app.add_option("--quality-size", quality_size, "pixels a side of pictures that are judged");
   CLI11_PARSE(app, argc, argv);
   arguments.quality.flight = arguments.flight;
-  arguments.quality.flight.width_px = arguments.quality.flight.height_px = 256;
+  arguments.quality.flight.width_px = arguments.quality.flight.height_px = quality_size;
   try {
     for (const std::string& table : arguments.tables) {
       if (table == "frames") {
         print_frames(arguments);
       } else if (table == "quality") {
-        print_errors("Along the flight, 256 x 256", arguments, measure_quality);
+        print_errors("Along the flight", arguments, measure_quality);
       } else if (table == "ablation") {
-        print_errors("From the same samples of a fifth of the pixels, 256 x 256", arguments,
+        print_errors("From the same samples of a fifth of the pixels", arguments,
                      measure_ablation);
       } else if (table == "finder") {
         print_finder();
