@@ -1,13 +1,13 @@
 // reach_filter.h — noise is averaged over pixels that no edge parts
 // What       An à-trous filter of 5 × 5 pixels and steps of 1, 2, 4, … pixels, whose taps end at edges: a pixel is
 //            reached over a longer step if each of the two shorter ones reaches. Among pixels that are reached, weights
-//            fall with the difference of colours in proportion to their noise.
+//            fall with the difference of colours in proportion to their noise, and where normals turn.
 // In         colours and the variances of their channels; which pixels are samples (the others are mixtures of what
 //            lies on both sides of an edge, and take the colour of their primary region)
 // Guarantee  the same picture at any number of threads; no colour crosses an edge
-// Source     H. Dammertz et al., "Edge-Avoiding À-Trous Wavelet Transform for fast Global Illumination Filtering"
-//            (2010); C. Schied et al., "Spatiotemporal Variance-Guided Filtering" (2017), §4.4. Theirs guess edges from
-//            depth and normals.
+// Source     H. Dammertz et al., "Edge-Avoiding À-Trous Wavelet Transform for fast Global Illumination
+//            Filtering" (2010); C. Schied et al., "Spatiotemporal Variance-Guided Filtering" (2017), §4.4.
+//            Theirs guess edges from depth and normals.
 #pragma once
 
 #include <vector>

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <optional>
 #include <utility>
+#include <variant>
 #include <vector>
 
 #include "base/parallel_for.h"
@@ -26,7 +27,7 @@ constexpr std::uint32_t kShadowSeed = 0x2545f491;  // other numbers than the pat
 constexpr std::size_t kMostEvents = 1'000'000;     // about 3 s
 constexpr float kLeastAlbedo = 0.02F;
 // Residues are alike that are not further apart than so many standard deviations; squared.
-constexpr float kApart2 = 4;
+constexpr float kResiduesApart2 = 4;
 // Part of the variance of a mean residue that is taken off it.
 constexpr float kClear2 = 1;
 // Ends of edges are known to an eighth of a pixel: so much of a pixel is on the wrong side, squared.
@@ -46,6 +47,11 @@ void set_color_at(Image& image, std::size_t pixel, Rgb color) {
 
 Rgb divided(Rgb a, Rgb b) {
   return {a.x / b.x, a.y / b.y, a.z / b.z};
+}
+
+// Where area lights throw shadows light changes gradually: their borders would only be in the way.
+bool is_sharp(const ShadowLight& light) {
+  return std::holds_alternative<HomogeneousPoint>(light);
 }
 
 // Edges of the picture, and on which side of them each pixel lies.
@@ -84,7 +90,8 @@ class EdgePicture {
 
   // A point in the middle of each pixel, and what stands between it and a light.
   PointCache look(std::vector<ShadowTriple>& triples) const {
-    const std::vector<ShadowLight> lights = shadow_lights(scene_);
+    std::vector<ShadowLight> lights = shadow_lights(scene_);
+    if (std::none_of(lights.begin(), lights.end(), is_sharp)) lights.clear();
     std::vector<Row> rows(std::size_t(image_.height_px));
     parallel_for(rows.size(), {.grain = 4, .threads = settings_.threads}, [&](std::size_t y) {
       for (int x = 0; x < image_.width_px; ++x) look_at(x, int(y), lights, rows[y]);
@@ -94,8 +101,6 @@ class EdgePicture {
       cache.add(row.points, 0);
       triples.insert(triples.end(), row.triples.begin(), row.triples.end());
     }
-    std::sort(triples.begin(), triples.end());
-    triples.erase(std::unique(triples.begin(), triples.end()), triples.end());
     return cache;
   }
 
@@ -108,9 +113,9 @@ class EdgePicture {
     row.points.push_back(point);
     if (!hit || lights.empty()) return;
     Sampler sampler(settings_.seed ^ kShadowSeed, std::uint32_t(x), std::uint32_t(y), 0);
-    ShadowProbe probe{ray, sampler.next_1d(), sampler.next_2d()};
-    if (const std::optional<ShadowTriple> triple = probe_shadow(scene_, lights, probe))
-      row.triples.push_back(*triple);
+    const ShadowProbe probe{ray, sampler.next_1d(), sampler.next_2d()};
+    const std::optional<ShadowTriple> triple = probe_shadow(scene_, lights, probe);
+    if (triple && is_sharp(lights[triple->light])) row.triples.push_back(*triple);
   }
 
   const PreparedScene& scene_;
@@ -125,9 +130,9 @@ struct Regions {
 };
 
 // The colours of primary regions, a plane for each channel and one of what is known; a row of nothing above and below.
-class Planes {
+class RegionPlanes {
  public:
-  Planes(int width, int height) : width_(std::size_t(width)) {
+  RegionPlanes(int width, int height) : width_(std::size_t(width)) {
     for (auto& plane : values_) plane.resize(width_ * std::size_t(height + 2));
   }
 
@@ -261,7 +266,7 @@ class Denoiser {
   // What each pixel shows: the colours of its two regions, equal where it has but one.
   [[nodiscard]] std::vector<Regions> find_regions(const Pixels& light) const {
     const int width = noisy_.width_px, height = noisy_.height_px;
-    Planes planes(width, height);
+    RegionPlanes planes(width, height);
     std::vector<Regions> regions(light.size());
     std::vector<Residue> residues(light.size());
     for (std::size_t i = 0; i < light.size(); ++i) {
@@ -315,7 +320,8 @@ class Denoiser {
         const Residue& other = residues[image().offset(px, py)];
         if (!other.known || (px == x && py == y)) continue;
         const Rgb d = own.color - other.color;
-        const float w = std::exp(-dot(d, d) / (kApart2 * (own.noise + other.noise) + 1e-12F));
+        const float w =
+            std::exp(-dot(d, d) / (kResiduesApart2 * (own.noise + other.noise) + 1e-12F));
         mean.color += other.color * w;
         mean.noise += other.noise * (w * w);
         sum += w;

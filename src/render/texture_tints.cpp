@@ -13,7 +13,7 @@
 namespace arris {
 namespace {
 
-constexpr int kReach = 2;  // pixels, of samples
+constexpr int kSampleReach = 2;  // pixels, of samples
 constexpr int kMostTaps = 8;
 constexpr float kOpaque = 0.999F;
 constexpr int kMostSheets = 64;  // cut out surfaces one behind another
@@ -138,7 +138,7 @@ struct Sight {
   SurfaceMaterial shown;
 };
 
-std::optional<Sight> look(const PreparedScene& scene, TraceRay ray) {
+std::optional<Sight> look_through(const PreparedScene& scene, TraceRay ray) {
   for (int sheet = 0; sheet < kMostSheets; ++sheet) {
     const std::optional<SurfaceHit> hit = scene.intersect(ray);
     if (!hit) return std::nullopt;
@@ -163,7 +163,8 @@ Rgb albedo_of(const PreparedScene& scene, const Sight& sight, const SurfaceMater
 SeenSurface see_surface(const PreparedScene& scene, const CameraRays& camera,
                         const PixelFilter& filter, Vec2f place) {
   const SceneGeometry& geometry = scene.geometry();
-  std::optional<Sight> sight = look(scene, camera_ray(camera, double(place.x), double(place.y)));
+  std::optional<Sight> sight =
+      look_through(scene, camera_ray(camera, double(place.x), double(place.y)));
   if (!sight) return {};
   const Material& material = geometry.scene.materials[sight->hit.material.index];
   const bool reflects = sight->shown.opacity > kOpaque && sight->shown.transmission == 0 &&
@@ -182,7 +183,8 @@ SeenSurface see_surface(const PreparedScene& scene, const CameraRays& camera,
 std::optional<Rgb> find_tint(const PreparedScene& scene, const CameraRays& camera,
                              const PixelFilter& filter, Vec2f place) {
   const SceneGeometry& geometry = scene.geometry();
-  std::optional<Sight> sight = look(scene, camera_ray(camera, double(place.x), double(place.y)));
+  std::optional<Sight> sight =
+      look_through(scene, camera_ray(camera, double(place.x), double(place.y)));
   if (!sight) return std::nullopt;
   const Material& material = geometry.scene.materials[sight->hit.material.index];
   if (!is_tinted(material, sight->shown)) return std::nullopt;
@@ -242,8 +244,8 @@ void TextureTints::tint_row(const PreparedScene& scene, const CameraRays& camera
   std::uint64_t* const tinted = tints_.is_tinted.row(y);
   for (int word = 0; word < marked_.words(); ++word) {
     std::uint64_t near = 0;
-    for (int dy = -kReach; dy <= kReach; ++dy) {
-      for (int dx = -kReach; dx <= kReach; ++dx)
+    for (int dy = -kSampleReach; dy <= kSampleReach; ++dy) {
+      for (int dx = -kSampleReach; dx <= kSampleReach; ++dx)
         near |= shifted_word(marked_.row(y + dy), word, dx);
     }
     for (std::uint64_t lost = tinted[word] & ~near; lost != 0; lost &= lost - 1) {
