@@ -58,6 +58,7 @@ nlohmann::ordered_json edge_point_json(const std::vector<EdgePointStats>& all, d
                        {"raster", stage(&Stages::raster)},
                        {"points", stage(&Stages::points)},
                        {"reachability", stage(&Stages::reachability)},
+                       {"textures", stage(&Stages::textures)},
                        {"interpolation", stage(&Stages::interpolation)},
                        {"antialias", stage(&Stages::antialias)},
                        {"complex", stage(&Stages::complex)},

@@ -365,6 +365,7 @@ void EdgePointEngine::Impl::keep_report(const FrameReport& report, const EdgeTot
   stages.points = report.times.points;
   stages.raster = report.times.raster;
   stages.reachability = report.times.reachability;
+  stages.textures = report.times.textures;
   stages.interpolation = report.times.interpolation;
   stages.antialias = report.times.antialias;
   stages.complex = report.times.complex;

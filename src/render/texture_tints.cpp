@@ -51,8 +51,8 @@ UvSteps find_uv_steps(const SceneGeometry& geometry, const CameraRays& camera, V
 }
 
 int taps_of(Vec2f step, const Texture& texture) {
-  const float texels =
-      std::hypot(step.x * float(texture.width_px), step.y * float(texture.height_px));
+  const float texels = std::max(std::fabs(step.x) * float(texture.width_px),
+                                std::fabs(step.y) * float(texture.height_px));
   return int(std::clamp(std::ceil(1 + 2 * texels), 1.0F, float(kMostTaps)));
 }
 
@@ -192,6 +192,10 @@ std::optional<Rgb> find_tint(const PreparedScene& scene, const CameraRays& camer
   sight->shown.base_color = filter_base_color(geometry, material, filter, sight->hit.uv, steps);
   SurfaceMaterial plain = sight->shown;
   plain.base_color = material.base_color;
+  if (plain.is_mix && plain.glossy_share == 0) {
+    const Rgb a = sight->shown.base_color, b = plain.base_color;
+    return Rgb{ratio(a.x, b.x), ratio(a.y, b.y), ratio(a.z, b.z)};
+  }
   const Rgb tinted = albedo_of(scene, *sight, sight->shown),
             white = albedo_of(scene, *sight, plain);
   return Rgb{ratio(tinted.x, white.x), ratio(tinted.y, white.y), ratio(tinted.z, white.z)};
