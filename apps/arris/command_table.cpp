@@ -96,6 +96,9 @@ CommandRow render_row() {
          {"--spp", "N", "samples per pixel (default: the scene's, else 64)"},
          {"--time", "SECONDS",
           "end after this time, with the samples made until then, at least one; of each frame"},
+         {"--denoise", "none|edges",
+          "edges: light is averaged up to the edges that are found in the scene, textures stay as "
+          "they are (path; default: none)"},
          {"--max-depth", "N", "bounces of light (default: the scene's, else 8)"},
          {"--seed", "N", "another pattern of noise (default: 0)"},
          {"--samples", "A..B",

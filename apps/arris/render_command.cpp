@@ -26,6 +26,8 @@
 #include "arris/values.h"
 #include "io/file_bytes.h"
 #include "io/picture_file.h"
+#include "render/edge_denoiser.h"
+#include "render/film.h"
 #include "scene/material_presets.h"
 #include "scene/scene_fingerprint.h"
 #include "scene/validate_placement.h"
@@ -67,7 +69,8 @@ void write_picture(const RenderRequest& request, const std::string& output, cons
     write_stdout(encode_picture(mean_picture(result.sum), PictureFormat::png, options));
     return;
   }
-  const bool is_part = request.is_part || (!result.complete && request.time_limit_seconds == 0);
+  const bool is_part = !request.denoise &&
+                       (request.is_part || (!result.complete && request.time_limit_seconds == 0));
   const bool keep_sum = is_part && picture_format(output) == PictureFormat::exr;
   save_picture(keep_sum ? pack_sum(result.sum) : mean_picture(result.sum), output, options);
 }
@@ -90,6 +93,7 @@ RenderJob make_job(const RenderRequest& request, const Scene& scene) {
   job.options.seed = request.seed;
   job.options.threads = request.threads;
   job.options.aovs = request.aovs;
+  if (request.denoise) job.options.aovs.emplace_back(kSquaresLayer);
   job.part.scene = scene_fingerprint(scene);
   job.part.seed = request.seed;
   job.part.integrator = name_of(request.integrator);
@@ -118,6 +122,18 @@ void report_scene(Console& console, const Scene& scene, const PrepareStats& stat
                   camera.target.y, camera.target.z, camera.fov_deg));
 }
 
+// Takes the layer of squares out of the picture.
+void denoise(const PreparedScene& scene, const RenderRequest& request, JobResult& result) {
+  const Stopwatch watch;
+  Picture picture = mean_picture(result.sum);
+  const auto squares = std::ranges::find(picture.layers, kSquaresLayer, &Layer::name);
+  const DenoiseSettings settings{result.sum.samples, request.filter, request.seed, request.threads};
+  picture.color = denoise_within_edges(scene, picture.color, squares->image, settings);
+  picture.layers.erase(squares);
+  result.sum = sum_of_mean(picture, result.sum.samples);
+  result.seconds += watch.seconds();
+}
+
 // What was done for each pixel; of beams, for all of them.
 std::string format_work(const JobResult& result) {
   if (result.edge_point && result.edge_point->traced) {
@@ -134,10 +150,10 @@ std::string format_work(const JobResult& result) {
 }
 
 void report_result(Console& console, const std::string& output, const JobResult& result,
-                   const Scene& scene) {
+                   const Scene& scene, const char* more) {
   const std::string target = output == "-" ? "stdout" : output;
   console.report(fmt::format("{}: {} x {} pixels, {}, {}", target, scene.image.width_px,
-                             scene.image.height_px, format_work(result),
+                             scene.image.height_px, format_work(result) + more,
                              format_duration(result.seconds)));
   if (result.seconds > 0) {
     console.detail(fmt::format("{:.2f} million rays per second",
@@ -203,7 +219,7 @@ class PictureMaker {
     const JobResult result = render(prepared);
     save(*prepared, request_.output, result);
     write_stats_if_asked();
-    report_result(console_, request_.output, result, scene_of(*prepared));
+    report_result(console_, request_.output, result, scene_of(*prepared), more_work());
     if (!stop_ || result.complete) return;
     throw Error(Error::Kind::failed, "",
                 fmt::format("stopped; the picture holds samples {} of {}..{}",
@@ -222,7 +238,7 @@ class PictureMaker {
       if (!result) end_if_stopped(frames, frame);
       const std::string output = frame_file(request_.output, frame);
       save(*prepared, output, *result);
-      report_result(console_, output, *result, scene_of(*prepared));
+      report_result(console_, output, *result, scene_of(*prepared), more_work());
       ++done_;
     }
     write_stats_if_asked();
@@ -267,7 +283,11 @@ class PictureMaker {
   }
 
   JobResult run(const std::shared_ptr<const PreparedScene>& prepared, const RenderJob& job) {
-    if (request_.integrator != Integrator::edge_point) return run_job(*renderer_, *prepared, job);
+    if (request_.integrator != Integrator::edge_point) {
+      JobResult result = run_job(*renderer_, *prepared, job);
+      if (request_.denoise) denoise(*prepared, request_, result);
+      return result;
+    }
     return request_.frames ? edge_point_.render_frame(prepared, job)
                            : edge_point_.render_still(prepared, job);
   }
@@ -289,6 +309,8 @@ class PictureMaker {
     write_picture(request_, output, result, scene_of(prepared).image.exposure);
     stats.write_seconds += write.seconds();
   }
+
+  [[nodiscard]] const char* more_work() const { return request_.denoise ? ", denoised" : ""; }
 
   void write_stats_if_asked() {
     if (request_.frames) stats.frames = done_;
@@ -331,6 +353,7 @@ int run_render(const Arguments& arguments) {
   if (loaded.is_scene_file) request.stage.source = StageOptions::Source::scene_file;
   const StagingReport staging = apply_request(loaded.scene, request, arguments);
   if (!staging.problem.empty()) throw Error(Error::Kind::input, loaded.name, staging.problem);
+  if (request.denoise) make_pixels_squares(loaded.scene, request);
   if (request.integrator == Integrator::beam) check_beam_scene(loaded.scene, loaded.name);
   if (request.frames) check_frames(loaded.scene, *request.frames, loaded.name);
   maker.ground_triangles = staging.ground_triangles;

@@ -166,6 +166,21 @@ void check_beam_options(const Arguments& arguments) {
   }
 }
 
+bool parse_denoise(const Arguments& arguments, Integrator integrator) {
+  const auto given = find_given(arguments, "--denoise");
+  if (!given || parse_choice(*given, {"none", "edges"}) == 0) return false;
+  if (integrator != Integrator::path) {
+    throw Error(Error::Kind::input, "--denoise",
+                fmt::format("can't be used with --integrator {}, whose pictures have other noise",
+                            name_of(integrator)));
+  }
+  if (arguments.has("--samples")) {
+    throw Error(Error::Kind::input, "--denoise",
+                "can't be used with --samples: what is denoised can't be joined with other parts");
+  }
+  return true;
+}
+
 std::vector<std::string> aovs_of(Integrator integrator) {
   if (integrator == Integrator::edge_point) return {"edges"};
   return make_renderer(integrator)->aovs();
@@ -297,6 +312,7 @@ RenderRequest make_render_request(const Arguments& arguments) {
   request.edge_point = parse_edge_point_settings(arguments, request.integrator);
   if (request.integrator == Integrator::beam) check_beam_options(arguments);
   if (request.integrator == Integrator::edge_point) check_edge_point_options(arguments);
+  request.denoise = parse_denoise(arguments, request.integrator);
   request.aovs = parse_aovs(arguments, request.integrator);
   request.shown_layers = find_shown_layers(request);
   request.stage = make_stage_options(arguments);
@@ -343,6 +359,11 @@ void apply_image_options(ImageSettings& image, const Arguments& arguments) {
   if (const auto given = find_given(arguments, "--exposure")) {
     image.exposure = parse_real(*given, {-kMostStops, kMostStops});
   }
+}
+
+void make_pixels_squares(Scene& scene, RenderRequest& request) {
+  request.filter = scene.image.filter;
+  scene.image.filter = ImageSettings::Filter::box;
 }
 
 StagingReport apply_request(Scene& scene, const RenderRequest& request,

@@ -35,6 +35,9 @@ struct RenderRequest {
   double time_limit_seconds = 0;
   std::uint32_t seed = 0;
   int threads = 0;
+  bool denoise = false;
+  // Of the scene, if pixels are denoised, which are squares until then.
+  ImageSettings::Filter filter = ImageSettings::Filter::box;
   std::vector<std::string> aovs;
   std::vector<std::string> shown_layers;  // of them, those that are also PNGs beside the picture
 };
@@ -46,6 +49,9 @@ const char* name_of(Integrator integrator);
 RenderRequest make_render_request(const Arguments& arguments);
 
 void apply_image_options(ImageSettings& image, const Arguments& arguments);
+
+// Before the scene is prepared: takes the pixel filter out of it, which is applied to what is denoised.
+void make_pixels_squares(Scene& scene, RenderRequest& request);
 
 // Size, depth, exposure, rounding and staging as the options say.
 StagingReport apply_request(Scene& scene, const RenderRequest& request, const Arguments& arguments);

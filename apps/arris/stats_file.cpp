@@ -59,6 +59,7 @@ nlohmann::ordered_json edge_point_json(const std::vector<EdgePointStats>& all, d
                        {"points", stage(&Stages::points)},
                        {"classify", stage(&Stages::classify)},
                        {"reachability", stage(&Stages::reachability)},
+                       {"textures", stage(&Stages::textures)},
                        {"interpolation", stage(&Stages::interpolation)},
                        {"antialias", stage(&Stages::antialias)},
                        {"complex", stage(&Stages::complex)},

@@ -52,8 +52,8 @@ struct EdgePointSettings {
 struct EdgePointStats {
   // Milliseconds.
   struct Stages {
-    double edges = 0, raster = 0, points = 0, classify = 0, reachability = 0, interpolation = 0,
-           antialias = 0, complex = 0, total = 0;
+    double edges = 0, raster = 0, points = 0, classify = 0, reachability = 0, textures = 0,
+           interpolation = 0, antialias = 0, complex = 0, total = 0;
   } stages;
   // Pixels.
   struct Classes {

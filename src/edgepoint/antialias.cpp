@@ -22,26 +22,33 @@ bool touches(const CornerPlanes& corners, const Side& side, int x, int y) {
 
 }  // namespace
 
-Rgb antialias_simple_pixel(const EdgePointImage& image, int x, int y,
-                           const PrimaryNeighborhood& rows) {
+std::optional<Rgb> find_secondary_color(const EdgePointImage& image, int x, int y,
+                                        const PrimaryNeighborhood& rows) {
   const PixelCode code = image.codes[image.offset(x, y)];
   const EdgeTables& tables = edge_tables();
-  const float area_a = tables.area_a[code.edge()];
-  const float area = code.primary_is_a() ? area_a : 1 - area_a;
   const EdgeTables::Sides sides =
       (code.primary_is_a() ? tables.sides_b : tables.sides_a)[code.edge()];
-  const bool knows_primary = rows.here.weight[x] > 0;
-  const Rgb primary = color_at(rows.here.color, x);
   for (unsigned i = 0; i < sides.count; ++i) {
     const Side& side = kSides[sides.order >> (2 * i) & 3U];
     const int nx = x + side.dx, ny = y + side.dy;
     if (nx < 0 || ny < 0 || nx >= image.width_px || ny >= image.height_px) continue;
     const PrimaryRows& row = side.dy < 0 ? rows.above : side.dy > 0 ? rows.below : rows.here;
     if (!(row.weight[nx] > 0) || !touches(image.corners, side, x, y)) continue;
-    const Rgb secondary = color_at(row.color, nx);
-    return knows_primary ? primary * area + secondary * (1 - area) : secondary;
+    return color_at(row.color, nx);
   }
-  return primary;
+  return std::nullopt;
+}
+
+Rgb antialias_simple_pixel(const EdgePointImage& image, int x, int y,
+                           const PrimaryNeighborhood& rows) {
+  const Rgb primary = color_at(rows.here.color, x);
+  const std::optional<Rgb> secondary = find_secondary_color(image, x, y, rows);
+  if (!secondary) return primary;
+  if (!(rows.here.weight[x] > 0)) return *secondary;
+  const PixelCode code = image.codes[image.offset(x, y)];
+  const float area_a = edge_tables().area_a[code.edge()];
+  const float area = code.primary_is_a() ? area_a : 1 - area_a;
+  return primary * area + *secondary * (1 - area);
 }
 
 }  // namespace arris

@@ -6,6 +6,8 @@
 //            neighbour must also be reached from the secondary region without crossing an edge.
 #pragma once
 
+#include <optional>
+
 #include "arris/math.h"
 #include "edgepoint/color_rows.h"
 #include "edgepoint/edge_point_image.h"
@@ -21,7 +23,9 @@ struct PrimaryNeighborhood {
   PrimaryRows above, here, below;
 };
 
-// Precondition: the pixel is simple.
+// Precondition: the pixel is simple. Of the neighbour; nothing if none on its side is known.
+std::optional<Rgb> find_secondary_color(const EdgePointImage& image, int x, int y,
+                                        const PrimaryNeighborhood& rows);
 Rgb antialias_simple_pixel(const EdgePointImage& image, int x, int y,
                            const PrimaryNeighborhood& rows);
 

@@ -162,6 +162,7 @@ FrameReport FrameMaker::make(const PixelView& view, const FrameEdges& edges, Poi
 
   std::vector<BandReport> reports(bands_.size());
   const TintImage* const tints = settings.find_tints ? settings.find_tints(image_) : nullptr;
+  report.times.textures = watch.lap();
   const ReconstructionSettings reconstruction{settings.complex_filter, settings.frame, tints};
   parallel_for(bands_.size(), parallel, [&](std::size_t i) {
     reports[i] = reconstruct_band(image_, cache, reconstruction, bands_[i], picture, wanted_);

@@ -26,8 +26,8 @@ namespace arris {
 // Milliseconds. Interpolation, antialiasing and complex pixels go on in one pass: its time is shared out by what each
 // has taken of all threads'.
 struct FrameTimes {
-  double points = 0, raster = 0, classify = 0, reachability = 0, interpolation = 0, antialias = 0,
-         complex = 0;
+  double points = 0, raster = 0, classify = 0, reachability = 0, textures = 0, interpolation = 0,
+         antialias = 0, complex = 0;
 };
 
 struct FrameReport {

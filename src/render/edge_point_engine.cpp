@@ -367,6 +367,7 @@ void EdgePointEngine::Impl::keep_report(const FrameReport& report, const EdgeTot
   stages.raster = report.times.raster;
   stages.classify = report.times.classify;
   stages.reachability = report.times.reachability;
+  stages.textures = report.times.textures;
   stages.interpolation = report.times.interpolation;
   stages.antialias = report.times.antialias;
   stages.complex = report.times.complex;

@@ -16,7 +16,7 @@ void add_to(ImageSum& image, std::size_t pixel, Vec3f value) {
 }
 
 int channels_of(const std::string& layer) {
-  return layer == "albedo" || layer == "normal" ? 3 : 1;
+  return layer == "albedo" || layer == "normal" || layer == kSquaresLayer ? 3 : 1;
 }
 
 }  // namespace
@@ -32,7 +32,7 @@ Film::Film(int width_px, int height_px, const std::vector<std::string>& layers) 
   sum_.height_px = height_px;
   sum_.images.push_back(make_image_sum("", 3, pixels));
   for (const std::string& name : layers) {
-    if (std::find(known.begin(), known.end(), name) == known.end()) {
+    if (name != kSquaresLayer && std::find(known.begin(), known.end(), name) == known.end()) {
       throw Error(Error::Kind::input, "aov \"" + name + "\"",
                   fmt::format("not one of {}", fmt::join(known, ", ")));
     }
@@ -48,11 +48,13 @@ Film::Film(int width_px, int height_px, const std::vector<std::string>& layers) 
   object_ = find("object");
   rounded_ = find("rounded");
   bevel_fac_ = find("bevel_fac");
+  squares_ = find(kSquaresLayer);
   if (object_) object_known_.resize(pixels);
 }
 
 void Film::add(std::size_t pixel, Rgb radiance, const FirstHit& first) {
   add_to(sum_.images.front(), pixel, radiance);
+  if (squares_) add_to(sum_.images[*squares_], pixel, radiance * radiance);
   if (sum_.images.size() > 1) add_layers(pixel, first);
 }
 

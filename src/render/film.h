@@ -31,6 +31,9 @@ struct FirstHit {
 // The AOVs a film can hold: their names, in the order of Film's layers.
 std::vector<std::string> film_layer_names();
 
+// A layer besides: the squares of the samples' radiances, from which their variance follows.
+inline constexpr const char* kSquaresLayer = "squares";
+
 class Film {
  public:
   // Throws Error for a layer name it does not know.
@@ -49,7 +52,7 @@ class Film {
   using Layer = std::optional<std::size_t>;  // index of sum_.images, if asked for
 
   PictureSum sum_;  // the colour first
-  Layer albedo_, normal_, depth_, object_, rounded_, bevel_fac_;
+  Layer albedo_, normal_, depth_, object_, rounded_, bevel_fac_, squares_;
   std::vector<std::uint8_t> object_known_;
 };
 

@@ -13,8 +13,9 @@
 namespace arris {
 namespace {
 
-constexpr int kReach = 2;  // pixels, of samples
+constexpr int kSampleReach = 2;  // pixels, of samples
 constexpr int kMostTaps = 8;
+constexpr float kOpaque = 0.999F;
 constexpr int kMostSheets = 64;  // cut out surfaces one behind another
 constexpr std::uint8_t kMiddle = 16, kNotYet = 255;
 
@@ -50,8 +51,8 @@ UvSteps find_uv_steps(const SceneGeometry& geometry, const CameraRays& camera, V
 }
 
 int taps_of(Vec2f step, const Texture& texture) {
-  const float texels =
-      std::hypot(step.x * float(texture.width_px), step.y * float(texture.height_px));
+  const float texels = std::max(std::fabs(step.x) * float(texture.width_px),
+                                std::fabs(step.y) * float(texture.height_px));
   return int(std::clamp(std::ceil(1 + 2 * texels), 1.0F, float(kMostTaps)));
 }
 
@@ -128,32 +129,81 @@ std::vector<bool> find_tinted_objects(const Scene& scene) {
   return tinted;
 }
 
+namespace {
+
+// What a ray sees behind what is cut out, and its material there.
+struct Sight {
+  TraceRay ray;
+  SurfaceHit hit;
+  SurfaceMaterial shown;
+};
+
+std::optional<Sight> look_through(const PreparedScene& scene, TraceRay ray) {
+  for (int sheet = 0; sheet < kMostSheets; ++sheet) {
+    const std::optional<SurfaceHit> hit = scene.intersect(ray);
+    if (!hit) return std::nullopt;
+    std::optional<SurfaceMaterial> storage;
+    const SurfaceMaterial& shown = material_at(scene, *hit, storage);
+    if (shown.opacity > 0) return Sight{ray, *hit, shown};
+    ray = leave_surface(*hit, ray.direction);
+  }
+  return std::nullopt;
+}
+
+Rgb albedo_of(const PreparedScene& scene, const Sight& sight, const SurfaceMaterial& material) {
+  const Frame frame = shading_frame(scene, sight.hit, material);
+  const Vec3f wo = local_from_world(frame, -sight.ray.direction);
+  const bool inside = sight.hit.side == Side::inside;
+  return directional_albedo(
+      material, make_bsdf(material, wo, inside ? MediumSide::inside : MediumSide::outside));
+}
+
+}  // namespace
+
+SeenSurface see_surface(const PreparedScene& scene, const CameraRays& camera,
+                        const PixelFilter& filter, Vec2f place) {
+  const SceneGeometry& geometry = scene.geometry();
+  std::optional<Sight> sight =
+      look_through(scene, camera_ray(camera, double(place.x), double(place.y)));
+  if (!sight) return {};
+  const Material& material = geometry.scene.materials[sight->hit.material.index];
+  const bool reflects = sight->shown.opacity > kOpaque && sight->shown.transmission == 0 &&
+                        !(max_component(sight->shown.emission) > 0);
+  SeenSurface seen;
+  seen.normal = shading_frame(scene, sight->hit, sight->shown).normal;
+  if (!reflects) return seen;
+  if (is_tinted(material, sight->shown)) {
+    const UvSteps steps = find_uv_steps(geometry, camera, place, sight->hit);
+    sight->shown.base_color = filter_base_color(geometry, material, filter, sight->hit.uv, steps);
+  }
+  seen.albedo = albedo_of(scene, *sight, sight->shown);
+  return seen;
+}
+
 std::optional<Rgb> find_tint(const PreparedScene& scene, const CameraRays& camera,
                              const PixelFilter& filter, Vec2f place) {
   const SceneGeometry& geometry = scene.geometry();
-  TraceRay ray = camera_ray(camera, double(place.x), double(place.y));
-  for (int sheet = 0; sheet < kMostSheets; ++sheet) {
-    const std::optional<SurfaceHit> hit = scene.intersect(ray);
-    if (!hit || !geometry.materials[hit->material.index].textured) return std::nullopt;
-    const Material& material = geometry.scene.materials[hit->material.index];
-    SurfaceMaterial shown = eval_material(material, geometry.scene.textures, hit->uv);
-    if (shown.opacity <= 0) {
-      ray = leave_surface(*hit, ray.direction);
-      continue;
-    }
-    if (!is_tinted(material, shown)) return std::nullopt;
-    const Frame frame = shading_frame(scene, *hit, shown);
-    const Vec3f wo = local_from_world(frame, -ray.direction);
-    const MediumSide side = hit->side == Side::inside ? MediumSide::inside : MediumSide::outside;
-    const UvSteps steps = find_uv_steps(geometry, camera, place, *hit);
-    shown.base_color = filter_base_color(geometry, material, filter, hit->uv, steps);
-    SurfaceMaterial plain = shown;
-    plain.base_color = material.base_color;
-    const Rgb tinted = directional_albedo(shown, make_bsdf(shown, wo, side));
-    const Rgb white = directional_albedo(plain, make_bsdf(plain, wo, side));
-    return Rgb{ratio(tinted.x, white.x), ratio(tinted.y, white.y), ratio(tinted.z, white.z)};
+  std::optional<Sight> sight =
+      look_through(scene, camera_ray(camera, double(place.x), double(place.y)));
+  if (!sight) return std::nullopt;
+  const Material& material = geometry.scene.materials[sight->hit.material.index];
+  if (!is_tinted(material, sight->shown)) return std::nullopt;
+  const UvSteps steps = find_uv_steps(geometry, camera, place, sight->hit);
+  sight->shown.base_color = filter_base_color(geometry, material, filter, sight->hit.uv, steps);
+  SurfaceMaterial plain = sight->shown;
+  plain.base_color = material.base_color;
+  if (plain.is_mix && plain.glossy_share == 0) {
+    const Rgb a = sight->shown.base_color, b = plain.base_color;
+    return Rgb{ratio(a.x, b.x), ratio(a.y, b.y), ratio(a.z, b.z)};
   }
-  return std::nullopt;
+  const Rgb tinted = albedo_of(scene, *sight, sight->shown),
+            white = albedo_of(scene, *sight, plain);
+  return Rgb{ratio(tinted.x, white.x), ratio(tinted.y, white.y), ratio(tinted.z, white.z)};
+}
+
+Vec2f primary_place_of(const EdgePointImage& image, int x, int y) {
+  const std::size_t at = image.offset(x, y);
+  return place_in(primary_place(image.codes[at], image.points[at]));
 }
 
 TextureTints::TextureTints(const Scene& scene)
@@ -198,8 +248,8 @@ void TextureTints::tint_row(const PreparedScene& scene, const CameraRays& camera
   std::uint64_t* const tinted = tints_.is_tinted.row(y);
   for (int word = 0; word < marked_.words(); ++word) {
     std::uint64_t near = 0;
-    for (int dy = -kReach; dy <= kReach; ++dy) {
-      for (int dx = -kReach; dx <= kReach; ++dx)
+    for (int dy = -kSampleReach; dy <= kSampleReach; ++dy) {
+      for (int dx = -kSampleReach; dx <= kSampleReach; ++dx)
         near |= shifted_word(marked_.row(y + dy), word, dx);
     }
     for (std::uint64_t lost = tinted[word] & ~near; lost != 0; lost &= lost - 1) {

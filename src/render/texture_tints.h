@@ -29,6 +29,18 @@ std::vector<bool> find_tinted_objects(const Scene& scene);
 std::optional<Rgb> find_tint(const PreparedScene& scene, const CameraRays& camera,
                              const PixelFilter& filter, Vec2f place);
 
+// What it sees: which part of even light that reflects, with its texture averaged like that, and its shading normal. 1
+// and 0 where the ray leaves the scene; 1 also where the surface emits, transmits or lets light through.
+struct SeenSurface {
+  Rgb albedo{1, 1, 1};
+  Vec3f normal;
+};
+SeenSurface see_surface(const PreparedScene& scene, const CameraRays& camera,
+                        const PixelFilter& filter, Vec2f place);
+
+// A place in a pixel's primary region, from its upper left corner: the point's, else near the region's middle.
+Vec2f primary_place_of(const EdgePointImage& image, int x, int y);
+
 class TextureTints {
  public:
   explicit TextureTints(const Scene& scene);

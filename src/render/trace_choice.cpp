@@ -10,7 +10,7 @@ constexpr double kRayMs = 0.25e-3;
 // Weight of what is new in the mean, and how far above the limit traced frames may go.
 constexpr double kNew = 0.25, kSlack = 1.5;
 // Fewer items say little: they wait for more.
-constexpr std::uint64_t kFewItems = 64;
+constexpr std::uint64_t kLeastItems = 64;
 
 }  // namespace
 
@@ -18,7 +18,7 @@ void TraceChoice::add(const ShadingCost& more, int threads) {
   pending_.items += more.items;
   pending_.rays += more.rays;
   pending_.thread_seconds += more.thread_seconds;
-  if (pending_.items < kFewItems) return;
+  if (pending_.items < kLeastItems) return;
   const ShadingCost cost = std::exchange(pending_, {});
   const double ms = measure_ == CostMeasure::rays
                         ? double(cost.rays) * kRayMs

@@ -486,6 +486,16 @@ TEST(Frames, are_made_of_edges_and_points_too) {
   EXPECT_TRUE(place.read("f_2.png") == place.read("g_2.png"));
 }
 
+TEST(Render, denoises_and_says_so) {
+  const Workplace place;
+  const Outcome run =
+      place.arris("render cube.stl --size 40x30 --spp 4 --denoise edges --aov albedo -o d.exr");
+  ASSERT_EQ(run.code, 0) << run.err;
+  EXPECT_THAT(run.err, HasSubstr("d.exr: 40 x 30 pixels, samples 0..4, denoised, "));
+  ASSERT_EQ(place.arris("render cube.stl --size 40x30 --spp 4 -o n.exr").code, 0);
+  EXPECT_TRUE(place.read("d.exr") != place.read("n.exr"));
+}
+
 TEST(Frames, that_are_cheap_are_traced_and_say_so) {
   const Workplace place;
   test::write_text(place / "moving.toml", kMoving);

@@ -103,6 +103,10 @@ INSTANTIATE_TEST_SUITE_P(
         Misuse{"render cube.stl -o a.png --integrator edge-point --trace-below 5",
                "--trace-below: needs --frames: a view that stands still goes over to paths by "
                "itself\n"},
+        Misuse{"render cube.stl -o a.png --denoise edges --samples 0..4",
+               "--denoise: can't be used with --samples: "},
+        Misuse{"render cube.stl -o a.png --denoise edges --integrator beam",
+               "--denoise: can't be used with --integrator beam, "},
         Misuse{"render cube.stl -o a.png --density 0.1",
                "--density: needs --integrator edge-point\n"},
         Misuse{"render cube.stl -o a.png --integrator edge-point --density 0", "--density: "},
