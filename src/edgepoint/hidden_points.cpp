@@ -145,8 +145,11 @@ class DepthFit {
   float x_ = 0, y_ = 0, xx_ = 0, xy_ = 0, yy_ = 0, s_ = 0, sx_ = 0, sy_ = 0;
 };
 
-bool is_hidden(const EdgePointImage& image, int x, int y, float pixel_size) {
+bool is_hidden(const EdgePointImage& image, std::span<const std::uint32_t> objects, int x, int y,
+               float pixel_size) {
   const PointKey own = image.points[image.offset(x, y)];
+  const float limit = own.depth() / (1 + kPixelsDeep * pixel_size);
+  bool is_behind_other = false;
   DepthFit fit;
   const auto add = [&](int dx, int dy) {
     if (!image.samples.at(x + dx, y + dy)) return;
@@ -156,6 +159,8 @@ bool is_hidden(const EdgePointImage& image, int x, int y, float pixel_size) {
     };
     fit.add(float(dx) + quarters(other.cell() % 4, own.cell() % 4),
             float(dy) + quarters(other.cell() / 4, own.cell() / 4), 1 / other.depth());
+    is_behind_other = is_behind_other || (other.depth() < limit &&
+                                          objects[other.point()] != objects[own.point()]);
   };
   for (std::size_t k = 0; k < kReachOffsets; ++k) {
     const auto [dx, dy] = kReachOffset[k];
@@ -164,6 +169,7 @@ bool is_hidden(const EdgePointImage& image, int x, int y, float pixel_size) {
     const bool inside = x - dx >= 0 && x - dx < image.width_px && y - dy >= 0;
     if (inside && image.reach.at(k, x - dx, y - dy)) add(-dx, -dy);
   }
+  if (is_behind_other) return true;
   const std::optional<DepthFit::Result> surface = fit.result();
   return surface &&
          1 / own.depth() < surface->inverse / (1 + kPixelsDeep * pixel_size) - surface->tolerance;
@@ -172,8 +178,10 @@ bool is_hidden(const EdgePointImage& image, int x, int y, float pixel_size) {
 // Rows of a band, with those around it.
 class HiddenFinder {
  public:
-  HiddenFinder(const EdgePointImage& image, const DepthCells& cells, RowBand band, float pixel_size)
+  HiddenFinder(const EdgePointImage& image, std::span<const std::uint32_t> objects,
+               const DepthCells& cells, RowBand band, float pixel_size)
       : image_(image),
+        objects_(objects),
         cells_(cells),
         band_(band),
         pixel_size_(pixel_size),
@@ -215,7 +223,7 @@ class HiddenFinder {
     for (; deep != 0; deep &= deep - 1) {
       const int x = 64 * word + std::countr_zero(deep);
       const std::size_t at = image_.offset(x, y);
-      if (is_hidden(image_, x, y, pixel_size_)) {
+      if (is_hidden(image_, objects_, x, y, pixel_size_)) {
         hidden_.push_back(std::uint32_t(at));
       }
     }
@@ -239,6 +247,7 @@ class HiddenFinder {
   }
 
   const EdgePointImage& image_;
+  std::span<const std::uint32_t> objects_;
   const DepthCells& cells_;
   RowBand band_;
   float pixel_size_;
@@ -251,9 +260,11 @@ class HiddenFinder {
 
 }  // namespace
 
-std::vector<std::uint32_t> find_hidden_points(const EdgePointImage& image, const DepthCells& cells,
-                                              RowBand band, float pixel_size) {
-  return HiddenFinder(image, cells, band, pixel_size).find();
+std::vector<std::uint32_t> find_hidden_points(const EdgePointImage& image,
+                                              std::span<const std::uint32_t> objects,
+                                              const DepthCells& cells, RowBand band,
+                                              float pixel_size) {
+  return HiddenFinder(image, objects, cells, band, pixel_size).find();
 }
 
 void remove_points(std::span<const std::uint32_t> pixels, EdgePointImage& image) {

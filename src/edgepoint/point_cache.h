@@ -83,7 +83,7 @@ class PointCache {
   [[nodiscard]] const float* y() const { return y_.data(); }
   [[nodiscard]] const float* z() const { return z_.data(); }
   [[nodiscard]] std::span<const PointLook> looks() const { return looks_; }
-  [[nodiscard]] const std::uint32_t* objects() const { return object_.data(); }
+  [[nodiscard]] std::span<const std::uint32_t> objects() const { return object_; }
 
   // How many points of each block were seen.
   void set_seen(std::span<const std::uint32_t> seen);

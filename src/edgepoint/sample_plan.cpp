@@ -11,6 +11,10 @@ namespace {
 constexpr int kTile = 32;  // pixels
 constexpr int kPattern = 128;
 
+std::uint64_t square(std::size_t w) {
+  return w * w;
+}
+
 float fraction(float v) {
   return v - std::floor(v);
 }
@@ -33,13 +37,15 @@ std::array<std::uint16_t, std::size_t(kPattern* kPattern)> make_pattern() {
 std::vector<std::uint32_t> plan_samples(std::span<const std::uint8_t> wanted,
                                         const SamplePlanSettings& settings) {
   std::vector<std::uint32_t> plan;
-  const std::uint64_t total = std::accumulate(wanted.begin(), wanted.end(), std::uint64_t{0});
+  const std::uint64_t total =
+      std::accumulate(wanted.begin(), wanted.end(), std::uint64_t{0},
+                      [](std::uint64_t sum, std::uint8_t w) { return sum + square(w); });
   if (total == 0 || settings.count == 0) return plan;
   static const auto kNoise = make_pattern();
   const double chance = 65536.0 * double(settings.count) / double(total);
   std::array<std::uint32_t, 256> limit{};
   for (std::size_t w = 0; w < limit.size(); ++w) {
-    limit[w] = std::uint32_t(std::min(65536.0, chance * double(w)));
+    limit[w] = std::uint32_t(std::min(65536.0, chance * double(square(w))));
   }
   // The golden ratio spreads a pixel's values over the frames.
   const auto shift = std::uint16_t(settings.frame * 40503U);

@@ -1,6 +1,6 @@
 // sample_plan.h — which pixels to shade next
-// What       picks about a given number of pixels, each with a chance in proportion to how much it wants a sample,
-//            spread
+// What       picks about a given number of pixels, each with a chance in proportion to the square of how much it
+//            wants a sample, so that where nothing is known there is something after two frames or three; spread
 //            evenly: the chances are held against a dither pattern that moves from frame to frame
 // Guarantee  the same plan at any number of threads; in the order of tiles, so that what arrives together lies
 //            together
