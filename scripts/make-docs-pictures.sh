@@ -23,3 +23,20 @@ render examples/models/arch.obj arch.jpg --size 960x540 --lighting sky
 render examples/csg/bearing_block.csg bearing_block.jpg --size 960x540
 render examples/scenes/bevel_shader.toml bevel_shader.jpg
 render examples/scenes/cornell_box.toml cornell_box.jpg
+
+# The second frame of a view.
+frame_of() { # INPUT PICTURE [OPTION…]
+  local made
+  made=$(mktemp -d)
+  "$arris" render "$1" --frames 0..2 -o "$made/#.jpg" --quiet "${@:3}"
+  mv "$made/1.jpg" "$pictures/$2"
+  echo "$pictures/$2"
+  if [ -e "$made/1.edges.png" ]; then mv "$made/1.edges.png" "$pictures/${2%.jpg}_classes.png"; fi
+  rm -r "$made"
+}
+
+# Its points are a fifth of the pixels; its edges are those of shadows, too.
+points=(--integrator edge-point --trace-below 0 --point-paths 64 --density 0.001)
+frame_of examples/scenes/trellis.toml trellis.jpg "${points[@]}" --aov edges
+frame_of examples/scenes/trellis.toml trellis_without_edges.jpg "${points[@]}" --edges off
+frame_of examples/scenes/trellis.toml trellis_traced.jpg --spp "$spp"
