@@ -23,15 +23,19 @@
 #define ARRIS_EDGEPOINT_HIDDEN_POINTS_ONCE
 namespace arris {
 
-// A neighbour within reach: which of 64 pixels it has a sample for, and the inverse depths there.
+// A neighbour within reach: which of 64 pixels it has a sample for, the inverse depths there, and its offset.
 struct DepthTap {
   std::uint64_t pixels;
   const float* inverse;
+  int dx, dy;
 };
 struct DepthTaps {
   std::array<DepthTap, 24> taps;
   std::size_t count = 0;
 };
+
+// So many samples around give a plane.
+inline constexpr int kPlaneSamples = 4;
 
 }  // namespace arris
 #endif
@@ -51,10 +55,11 @@ std::uint64_t mask_bits(Tag tag, hn::Mask<Tag> mask) {
   return bits & ((std::uint64_t{1} << hn::Lanes(tag)) - 1);
 }
 
-// Of 64 pixels those whose inverse depth is below `part` of the mean of their neighbours'.
+// Of 64 pixels those whose inverse depth is below `part` of the mean of their neighbours', if these may give a plane.
 std::uint64_t find_deeper(const DepthTaps& taps, const float* inverse, float part) {
   const hn::CappedTag<float, 16> f;
   const auto one = hn::Set(f, 1.0F), zero = hn::Zero(f);
+  const auto enough = hn::Set(f, float(kPlaneSamples));
   const std::size_t lanes = hn::Lanes(f);
   std::uint64_t found = 0;
   for (std::size_t i = 0; i < 64; i += lanes) {
@@ -69,7 +74,7 @@ std::uint64_t find_deeper(const DepthTaps& taps, const float* inverse, float par
     }
     const auto own = hn::LoadU(f, inverse + i);
     const auto deeper = hn::Lt(hn::Mul(own, count), hn::Mul(sum, hn::Set(f, part)));
-    found |= mask_bits(f, deeper) << i;
+    found |= mask_bits(f, hn::And(deeper, hn::Ge(count, enough))) << i;
   }
   return found;
 }
@@ -98,8 +103,6 @@ HWY_EXPORT(find_products_below);
 
 // Depths within what a steep surface gains over some pixels say nothing.
 constexpr float kPixelsDeep = 8;
-// So many samples around give a plane.
-constexpr int kPlaneSamples = 4;
 // Of places, in pixels.
 constexpr float kPlaceError = 0.25F;
 
@@ -145,30 +148,6 @@ class DepthFit {
   float x_ = 0, y_ = 0, xx_ = 0, xy_ = 0, yy_ = 0, s_ = 0, sx_ = 0, sy_ = 0;
 };
 
-bool is_hidden(const EdgePointImage& image, int x, int y, float pixel_size) {
-  const PointKey own = image.points[image.offset(x, y)];
-  DepthFit fit;
-  const auto add = [&](int dx, int dy) {
-    if (!image.samples.at(x + dx, y + dy)) return;
-    const PointKey other = image.points[image.offset(x + dx, y + dy)];
-    const auto quarters = [](std::uint32_t a, std::uint32_t b) {
-      return 0.25F * (float(a) - float(b));
-    };
-    fit.add(float(dx) + quarters(other.cell() % 4, own.cell() % 4),
-            float(dy) + quarters(other.cell() / 4, own.cell() / 4), 1 / other.depth());
-  };
-  for (std::size_t k = 0; k < kReachOffsets; ++k) {
-    const auto [dx, dy] = kReachOffset[k];
-    // Nothing beyond the picture is reached.
-    if (image.reach.at(k, x, y)) add(dx, dy);
-    const bool inside = x - dx >= 0 && x - dx < image.width_px && y - dy >= 0;
-    if (inside && image.reach.at(k, x - dx, y - dy)) add(-dx, -dy);
-  }
-  const std::optional<DepthFit::Result> surface = fit.result();
-  return surface &&
-         1 / own.depth() < surface->inverse / (1 + kPixelsDeep * pixel_size) - surface->tolerance;
-}
-
 // Rows of a band, with those around it.
 class HiddenFinder {
  public:
@@ -211,14 +190,34 @@ class HiddenFinder {
     std::uint64_t deep = image_.samples.row(y)[word] & HWY_DYNAMIC_DISPATCH(find_products_below)(
                                                            inverse, nearest_.data() + x0, part);
     if (deep == 0) return;
-    deep &= HWY_DYNAMIC_DISPATCH(find_deeper)(taps_of(y, word), inverse, part);
+    const DepthTaps& taps = taps_of(y, word);
+    deep &= HWY_DYNAMIC_DISPATCH(find_deeper)(taps, inverse, part);
     for (; deep != 0; deep &= deep - 1) {
-      const int x = 64 * word + std::countr_zero(deep);
-      const std::size_t at = image_.offset(x, y);
-      if (is_hidden(image_, x, y, pixel_size_)) {
+      const int bit = std::countr_zero(deep);
+      const std::size_t at = image_.offset(64 * word + bit, y);
+      const std::optional<DepthFit::Result> surface = fit_around(taps, bit, at);
+      if (surface &&
+          inverse[bit] < surface->inverse / (1 + kPixelsDeep * pixel_size_) - surface->tolerance) {
         hidden_.push_back(std::uint32_t(at));
       }
     }
+  }
+
+  // Of the pixel at an offset, which is a bit of the word that the taps are of.
+  [[nodiscard]] std::optional<DepthFit::Result> fit_around(const DepthTaps& taps, int bit,
+                                                           std::size_t at) const {
+    const PointKey* const own = image_.points.data() + at;
+    DepthFit fit;
+    for (const DepthTap& tap : std::span(taps.taps).first(taps.count)) {
+      if ((tap.pixels >> unsigned(bit) & 1U) == 0) continue;
+      const PointKey other = own[tap.dy * std::ptrdiff_t(image_.width_px) + tap.dx];
+      const auto quarters = [](std::uint32_t a, std::uint32_t b) {
+        return 0.25F * (float(a) - float(b));
+      };
+      fit.add(float(tap.dx) + quarters(other.cell() % 4, own->cell() % 4),
+              float(tap.dy) + quarters(other.cell() / 4, own->cell() / 4), tap.inverse[bit]);
+    }
+    return fit.result();
   }
 
   const DepthTaps& taps_of(int y, int word) {
@@ -227,7 +226,7 @@ class HiddenFinder {
     const auto add = [&](int dx, int dy, std::uint64_t reached) {
       const std::uint64_t pixels = reached & shifted_word(image_.samples.row(y + dy), word, dx);
       if (pixels != 0)
-        taps.taps[taps.count++] = {pixels, row(y + dy) + 64 * std::ptrdiff_t(word) + dx};
+        taps.taps[taps.count++] = {pixels, row(y + dy) + 64 * std::ptrdiff_t(word) + dx, dx, dy};
     };
     for (std::size_t k = 0; k < kReachOffsets; ++k) {
       const auto [dx, dy] = kReachOffset[k];
