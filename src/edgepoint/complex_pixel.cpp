@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -49,12 +50,17 @@ std::uint32_t half_side(std::uint8_t crossings, unsigned half,
   return spread[crossings >> (4 * half) & 15U];
 }
 
+// Red, green, blue and 1, whose sums with weights are made as one vector.
+struct alignas(16) CountedColor {
+  std::array<float, 4> rgb1;
+};
+
 struct Subpixels {
   std::array<PixelCode, 4> middle{};  // the pixel's own, row after row
   std::array<Word, 4> primary{}, secondary{};
-  // Whose primary region's colour is known, and what it counts.
+  // Whose primary region's colour is known, and what it counts; of the others these are anything.
   Word known = 0;
-  std::array<Rgb, kSubpixelBits> color;
+  std::array<CountedColor, kSubpixelBits> color;
   std::array<float, kSubpixelBits> weight;
 };
 
@@ -77,9 +83,14 @@ struct PixelLines {
 class Builder {
  public:
   Builder(const EdgePointImage& image, int x, int y, const ComplexPixelColors& colors)
-      : image_(image), x_(x), y_(y), colors_(colors) {}
+      : image_(image), x_(x), y_(y), colors_(colors) {
+    build();
+  }
 
-  Subpixels build() {
+  [[nodiscard]] const Subpixels& subpixels() const { return out_; }
+
+ private:
+  void build() {
     for (int j = 0; j < 3; ++j) {
       for (int i = 0; i < 3; ++i) {
         const int px = x_ - 1 + i, py = y_ - 1 + j;
@@ -88,10 +99,8 @@ class Builder {
       }
     }
     for (Word& corner : out_.primary) corner |= empty_;
-    return out_;
   }
 
- private:
   void add_pixel(int i, int j) {
     const int px = x_ - 1 + i, py = y_ - 1 + j;
     const Crossings& c = image_.crossings;
@@ -157,7 +166,7 @@ class Builder {
   }
   void set_color(int bit, Rgb color, float weight) {
     out_.known |= Word{1} << unsigned(bit);
-    out_.color[std::size_t(bit)] = color;
+    out_.color[std::size_t(bit)].rgb1 = {color.x, color.y, color.z, 1};
     out_.weight[std::size_t(bit)] = weight;
   }
 
@@ -210,37 +219,53 @@ Matrices find_matrices(const Subpixels& s) {
   return HWY_NAMESPACE::chain_reach<Word>(right, down);
 }
 
-std::optional<Rgb> region_color(const Subpixels& s, const Matrices& matrices, int bit,
-                                bool of_primary) {
-  Rgb sum;
-  float weight = 0;
-  const auto add = [&](int at, float kernel) {
-    const float w = kernel * s.weight[std::size_t(at)];
-    sum += s.color[std::size_t(at)] * w;
-    weight += w;
-  };
-  if (of_primary && (s.known >> unsigned(bit) & 1U)) add(bit, kernel_weight(0, 0));
+// The subpixel itself, then each offset of kReachOffset and its opposite: sums are always made in this order.
+constexpr std::size_t kSubpixelSteps = 1 + 2 * kReachOffsets;
+struct SubpixelTap {
+  int step;
+  float kernel;
+};
+constexpr auto kSubpixelTaps = [] {
+  std::array<SubpixelTap, kSubpixelSteps> taps{};
+  taps[0] = {0, kernel_weight(0, 0)};
   for (std::size_t k = 0; k < kReachOffsets; ++k) {
     const auto [dx, dy] = kReachOffset[k];
-    const int step = bit_of(dx, dy);
+    taps[2 * k + 1] = {bit_of(dx, dy), kernel_weight(dx, dy)};
+    taps[2 * k + 2] = {-bit_of(dx, dy), kernel_weight(dx, dy)};
+  }
+  return taps;
+}();
+
+// Of a middle subpixel: all its taps are bits of the word.
+std::optional<Rgb> region_color(const Subpixels& s, const Matrices& matrices, int bit,
+                                bool of_primary) {
+  // Which taps count can't be guessed, so they are found without a branch.
+  Word taps = of_primary ? s.known >> unsigned(bit) & 1U : 0;
+  for (std::size_t k = 0; k < kReachOffsets; ++k) {
+    const int step = kSubpixelTaps[2 * k + 1].step;
     const auto& m = matrices[k];
     const Word there = of_primary ? m.pp : m.sp, back = of_primary ? m.pp : m.ps;
-    if ((there >> unsigned(bit) & s.known >> unsigned(bit + step) & 1U) != 0) {
-      add(bit + step, kernel_weight(dx, dy));
-    }
-    if (bit >= step && (back & s.known) >> unsigned(bit - step) & 1U) {
-      add(bit - step, kernel_weight(dx, dy));
-    }
+    taps |= (there >> unsigned(bit) & s.known >> unsigned(bit + step) & 1U) << (2 * k + 1);
+    taps |= ((back & s.known) >> unsigned(bit - step) & 1U) << (2 * k + 2);
   }
+  std::array<float, 4> sum{};
+  for (; taps != 0; taps &= taps - 1) {
+    const SubpixelTap& tap = kSubpixelTaps[std::size_t(std::countr_zero(taps))];
+    const auto at = std::size_t(bit + tap.step);
+    const float w = tap.kernel * s.weight[at];
+    for (std::size_t c = 0; c < 4; ++c) sum[c] += s.color[at].rgb1[c] * w;
+  }
+  const float weight = sum[3];
   if (!(weight > 0)) return std::nullopt;
-  return sum * (1 / weight);
+  return Rgb{sum[0], sum[1], sum[2]} * (1 / weight);
 }
 
 }  // namespace
 
 Rgb reconstruct_complex_pixel(const EdgePointImage& image, int x, int y,
                               const ComplexPixelColors& colors) {
-  const Subpixels s = Builder(image, x, y, colors).build();
+  const Builder builder(image, x, y, colors);
+  const Subpixels& s = builder.subpixels();
   const Rgb fallback = colors.fallback;
   const Matrices matrices = s.known != 0 ? find_matrices(s) : Matrices{};
   Rgb sum;

@@ -45,6 +45,9 @@ float on_grid(double v) {
 // Much less than the distance of a crossing from a corner that it does not pass through.
 constexpr double kAside = 1e-11;
 
+// Lines that are met sooner than it is found out which of them lie in a band.
+constexpr int kFewLines = 4;
+
 bool is_corner(double v) {
   return std::floor(2 * v) == 2 * v;
 }
@@ -69,7 +72,7 @@ class Marker {
     first = std::max(first, 0);
     last = std::min(last, 2 * width_);
     const double dy = double(e_.y1) - double(e_.y0);
-    if (dy != 0) limit_to_band(float(dy / dx), first, last);
+    if (dy != 0 && last - first > kFewLines) limit_to_band(float(dy / dx), first, last);
     for (int j = first; j <= last; ++j) {
       const double x = 0.5 * j, from = x - double(e_.x0);
       double y = double(e_.y0) + from * dy / dx;
@@ -161,11 +164,11 @@ ScreenEdge project_edge(const PixelView& view, const WorldEdge& edge) {
 ScreenEdge project_edge(const PixelView& view, const SoftEdge& edge) {
   const ScreenEdge e = project_edge(view, edge.edge);
   if (edge.penumbra == Vec3f{}) return e;
+  const Vec2d along{double(e.x1) - double(e.x0), double(e.y1) - double(e.y0)};
+  if (along.x == 0 && along.y == 0) return {};
+  const double length = std::hypot(along.x, along.y);
   const Vec3d middle = (Vec3d(edge.edge.a) + Vec3d(edge.edge.b)) / 2;
   const Vec3d beyond = project(view, middle + Vec3d(edge.penumbra));
-  const Vec2d along{double(e.x1) - double(e.x0), double(e.y1) - double(e.y0)};
-  const double length = std::hypot(along.x, along.y);
-  if (length == 0) return {};
   // The other side lies behind the eye.
   if (!(beyond.z > 0)) return {};
   const Vec2d across{beyond.x / beyond.z - double(e.x0), beyond.y / beyond.z - double(e.y0)};

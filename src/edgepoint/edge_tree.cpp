@@ -93,15 +93,23 @@ void find_signs(const Part& part, std::size_t first, std::size_t count,
 // What a query looks for: both signs (silhouettes), or any front (sharp edges that are drawn).
 enum class Wanted { both_signs, front };
 
-// Appends the edges wanted; `holds` decides of those too near zero.
+// Nodes that one thread goes through.
+constexpr std::size_t kNodesAtOnce = 4096;
+
+struct NodeRange {
+  std::size_t first, last;
+};
+
+// Appends the edges wanted of a range of nodes, wherever it starts; `holds` decides of those too near zero.
 template <class Predicate>
-void find_in(const Part& part, Wanted wanted, std::span<const UnitView> views,
-             const Predicate& holds, std::vector<std::uint32_t>& found) {
+void find_in_range(const Part& part, NodeRange range, Wanted wanted,
+                   std::span<const UnitView> views, const Predicate& holds,
+                   std::vector<std::uint32_t>& found) {
   const UnitViewBounds bounds = bounds_of(views);
   EdgeSigns signs;
   const float too_low = wanted == Wanted::both_signs ? kSignMargin : kInfinity;
   const float low_enough = wanted == Wanted::both_signs ? -kSignMargin : kInfinity;
-  for (std::size_t at = 0; at < part.nodes.size();) {
+  for (std::size_t at = range.first; at < range.last;) {
     const BoundsNode& node = part.nodes[at];
     const SignBounds s = signs_in(node.bounds, bounds);
     if (s.low > too_low || s.high < -kSignMargin) {
@@ -119,6 +127,25 @@ void find_in(const Part& part, Wanted wanted, std::span<const UnitView> views,
       }
     }
     ++at;
+  }
+}
+
+// Appends the edges wanted, of large trees on all cores.
+template <class Predicate>
+void find_in(const Part& part, Wanted wanted, std::span<const UnitView> views,
+             const Predicate& holds, std::vector<std::uint32_t>& found) {
+  const std::size_t count = (part.nodes.size() + kNodesAtOnce - 1) / kNodesAtOnce;
+  if (count <= 1) {
+    find_in_range(part, {0, part.nodes.size()}, wanted, views, holds, found);
+    return;
+  }
+  std::vector<std::vector<std::uint32_t>> in_range(count);
+  parallel_for(count, {}, [&](std::size_t i) {
+    const NodeRange range{i * kNodesAtOnce, std::min((i + 1) * kNodesAtOnce, part.nodes.size())};
+    find_in_range(part, range, wanted, views, holds, in_range[i]);
+  });
+  for (const std::vector<std::uint32_t>& edges : in_range) {
+    found.insert(found.end(), edges.begin(), edges.end());
   }
 }
 

@@ -7,7 +7,8 @@
 //            sign that is within kSignMargin of zero is not believed: nodes are entered, edges put to the predicate.
 //            Same tree, same order, with any number of threads.
 // Limits     viewpoints finite. Keeps a reference to the mesh, which must outlive it and not move.
-// Cost       build n log n, parallel; query about proportional to what is found. Const afterwards, queries from any
+// Cost       build n log n, parallel; query about proportional to what is found, on all cores for one viewpoint of a
+//            large tree. Const afterwards, queries from any
 //            number of threads.
 // Source     Bala, Walter, Greenberg 2003, section 6.4. As there: interval vectors, split on one axis where the
 //            children are smallest, edges whose normals span more than half of their node's stay at the node. Beyond

@@ -23,10 +23,11 @@
 #define ARRIS_EDGEPOINT_HIDDEN_POINTS_ONCE
 namespace arris {
 
-// A neighbour within reach: which of 64 pixels it has a sample for, and the inverse depths there.
+// A neighbour within reach: which of 64 pixels it has a sample for, the inverse depths there, and its offset.
 struct DepthTap {
   std::uint64_t pixels;
   const float* inverse;
+  int dx, dy;
 };
 struct DepthTaps {
   std::array<DepthTap, 24> taps;
@@ -51,25 +52,22 @@ std::uint64_t mask_bits(Tag tag, hn::Mask<Tag> mask) {
   return bits & ((std::uint64_t{1} << hn::Lanes(tag)) - 1);
 }
 
-// Of 64 pixels those whose inverse depth is below `part` of the mean of their neighbours'.
+// Of 64 pixels those whose inverse depth is below `part` of a neighbour's.
 std::uint64_t find_deeper(const DepthTaps& taps, const float* inverse, float part) {
   const hn::CappedTag<float, 16> f;
-  const auto one = hn::Set(f, 1.0F), zero = hn::Zero(f);
   const std::size_t lanes = hn::Lanes(f);
   std::uint64_t found = 0;
   for (std::size_t i = 0; i < 64; i += lanes) {
-    auto sum = zero, count = zero;
+    auto most = hn::Zero(f);
     for (std::size_t k = 0; k < taps.count; ++k) {
       const std::uint64_t bits = taps.taps[k].pixels >> i;
       std::array<std::uint8_t, 8> bytes;
       std::memcpy(bytes.data(), &bits, sizeof bits);
       const auto mask = hn::LoadMaskBits(f, bytes.data());
-      sum = hn::Add(sum, hn::IfThenElseZero(mask, hn::LoadU(f, taps.taps[k].inverse + i)));
-      count = hn::Add(count, hn::IfThenElseZero(mask, one));
+      most = hn::Max(most, hn::IfThenElseZero(mask, hn::LoadU(f, taps.taps[k].inverse + i)));
     }
     const auto own = hn::LoadU(f, inverse + i);
-    const auto deeper = hn::Lt(hn::Mul(own, count), hn::Mul(sum, hn::Set(f, part)));
-    found |= mask_bits(f, deeper) << i;
+    found |= mask_bits(f, hn::Lt(own, hn::Mul(most, hn::Set(f, part)))) << i;
   }
   return found;
 }
@@ -145,36 +143,6 @@ class DepthFit {
   float x_ = 0, y_ = 0, xx_ = 0, xy_ = 0, yy_ = 0, s_ = 0, sx_ = 0, sy_ = 0;
 };
 
-bool is_hidden(const EdgePointImage& image, std::span<const std::uint32_t> objects, int x, int y,
-               float pixel_size) {
-  const PointKey own = image.points[image.offset(x, y)];
-  const float limit = own.depth() / (1 + kPixelsDeep * pixel_size);
-  bool is_behind_other = false;
-  DepthFit fit;
-  const auto add = [&](int dx, int dy) {
-    if (!image.samples.at(x + dx, y + dy)) return;
-    const PointKey other = image.points[image.offset(x + dx, y + dy)];
-    const auto quarters = [](std::uint32_t a, std::uint32_t b) {
-      return 0.25F * (float(a) - float(b));
-    };
-    fit.add(float(dx) + quarters(other.cell() % 4, own.cell() % 4),
-            float(dy) + quarters(other.cell() / 4, own.cell() / 4), 1 / other.depth());
-    is_behind_other = is_behind_other || (other.depth() < limit &&
-                                          objects[other.point()] != objects[own.point()]);
-  };
-  for (std::size_t k = 0; k < kReachOffsets; ++k) {
-    const auto [dx, dy] = kReachOffset[k];
-    // Nothing beyond the picture is reached.
-    if (image.reach.at(k, x, y)) add(dx, dy);
-    const bool inside = x - dx >= 0 && x - dx < image.width_px && y - dy >= 0;
-    if (inside && image.reach.at(k, x - dx, y - dy)) add(-dx, -dy);
-  }
-  if (is_behind_other) return true;
-  const std::optional<DepthFit::Result> surface = fit.result();
-  return surface &&
-         1 / own.depth() < surface->inverse / (1 + kPixelsDeep * pixel_size) - surface->tolerance;
-}
-
 // Rows of a band, with those around it.
 class HiddenFinder {
  public:
@@ -219,14 +187,36 @@ class HiddenFinder {
     std::uint64_t deep = image_.samples.row(y)[word] & HWY_DYNAMIC_DISPATCH(find_products_below)(
                                                            inverse, nearest_.data() + x0, part);
     if (deep == 0) return;
-    deep &= HWY_DYNAMIC_DISPATCH(find_deeper)(taps_of(y, word), inverse, part);
+    const DepthTaps& taps = taps_of(y, word);
+    deep &= HWY_DYNAMIC_DISPATCH(find_deeper)(taps, inverse, part);
     for (; deep != 0; deep &= deep - 1) {
-      const int x = 64 * word + std::countr_zero(deep);
-      const std::size_t at = image_.offset(x, y);
-      if (is_hidden(image_, objects_, x, y, pixel_size_)) {
+      const int bit = std::countr_zero(deep);
+      const std::size_t at = image_.offset(64 * word + bit, y);
+      if (is_hidden(taps, bit, at, inverse[bit])) {
         hidden_.push_back(std::uint32_t(at));
       }
     }
+  }
+
+  // The point of the pixel at an offset, which is a bit of the word that the taps are of.
+  [[nodiscard]] bool is_hidden(const DepthTaps& taps, int bit, std::size_t at,
+                               float inverse) const {
+    const float part = 1 / (1 + kPixelsDeep * pixel_size_);
+    const PointKey* const own = image_.points.data() + at;
+    DepthFit fit;
+    for (const DepthTap& tap : std::span(taps.taps).first(taps.count)) {
+      if ((tap.pixels >> unsigned(bit) & 1U) == 0) continue;
+      const PointKey other = own[tap.dy * std::ptrdiff_t(image_.width_px) + tap.dx];
+      const float there = tap.inverse[bit];
+      if (inverse < there * part && objects_[other.point()] != objects_[own->point()]) return true;
+      const auto quarters = [](std::uint32_t a, std::uint32_t b) {
+        return 0.25F * (float(a) - float(b));
+      };
+      fit.add(float(tap.dx) + quarters(other.cell() % 4, own->cell() % 4),
+              float(tap.dy) + quarters(other.cell() / 4, own->cell() / 4), there);
+    }
+    const std::optional<DepthFit::Result> surface = fit.result();
+    return surface && inverse < surface->inverse * part - surface->tolerance;
   }
 
   const DepthTaps& taps_of(int y, int word) {
@@ -235,7 +225,7 @@ class HiddenFinder {
     const auto add = [&](int dx, int dy, std::uint64_t reached) {
       const std::uint64_t pixels = reached & shifted_word(image_.samples.row(y + dy), word, dx);
       if (pixels != 0)
-        taps.taps[taps.count++] = {pixels, row(y + dy) + 64 * std::ptrdiff_t(word) + dx};
+        taps.taps[taps.count++] = {pixels, row(y + dy) + 64 * std::ptrdiff_t(word) + dx, dx, dy};
     };
     for (std::size_t k = 0; k < kReachOffsets; ++k) {
       const auto [dx, dy] = kReachOffset[k];

@@ -1,8 +1,10 @@
 #include "edgepoint/hole_filler.h"
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cstddef>
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -106,17 +108,20 @@ void set_bit(BitPlane& plane, int x, int y, bool value) {
   word = value ? word | bit : word & ~bit;
 }
 
-HolePlanes make_planes(const EdgePointImage& image, std::span<const std::uint32_t> holes) {
+HolePlanes make_planes(const EdgePointImage& image, std::span<const std::uint32_t> holes,
+                       int threads) {
   HolePlanes planes{BitPlane(image.width_px, image.height_px),
                     BitPlane(image.width_px, image.height_px)};
   const auto& corners = image.corners.primary;
-  for (int y = 0; y < image.height_px; ++y) {
-    // All corners of an empty pixel are of its primary region, and of no other pixel.
-    for (int word = 0; word < planes.usable.words(); ++word) {
-      planes.usable.row(y)[word] = corners[0].row(y)[word] & corners[1].row(y)[word] &
-                                   corners[2].row(y)[word] & corners[3].row(y)[word];
-    }
-  }
+  parallel_for(std::size_t(image.height_px), {.grain = 128, .threads = threads},
+               [&](std::size_t row) {
+                 // All corners of an empty pixel are of its primary region, and of no other pixel.
+                 const int y = int(row);
+                 for (int word = 0; word < planes.usable.words(); ++word) {
+                   planes.usable.row(y)[word] = corners[0].row(y)[word] & corners[1].row(y)[word] &
+                                                corners[2].row(y)[word] & corners[3].row(y)[word];
+                 }
+               });
   for (const std::uint32_t hole : holes) {
     const int x = int(hole % std::uint32_t(image.width_px));
     const int y = int(hole / std::uint32_t(image.width_px));
@@ -126,66 +131,96 @@ HolePlanes make_planes(const EdgePointImage& image, std::span<const std::uint32_
   return planes;
 }
 
-// Of the holes of a word those that a usable colour reaches.
-std::uint64_t find_reached(const EdgePointImage& image, const HolePlanes& planes, int y, int word) {
-  std::uint64_t reached = 0;
-  for (std::size_t k = 0; k < kReachOffsets; ++k) {
-    const auto [dx, dy] = kReachOffset[k];
-    const BitPlane& reach = image.reach.planes[k];
-    reached |= reach.row(y)[word] & shifted_word(planes.usable.row(y + dy), word, dx);
-    reached |= shifted_word(reach.row(y - dy), word, -dx) &
-               shifted_word(planes.usable.row(y - dy), word, -dx);
+// For each offset of kReachOffset and its opposite: which of 64 pixels a usable colour reaches from there.
+class UsableTaps {
+ public:
+  UsableTaps(const EdgePointImage& image, const BitPlane& usable, int y, int word) {
+    for (std::size_t k = 0; k < kReachOffsets; ++k) {
+      const auto [dx, dy] = kReachOffset[k];
+      const BitPlane& reach = image.reach.planes[k];
+      taps_[2 * k] = reach.row(y)[word] & shifted_word(usable.row(y + dy), word, dx);
+      taps_[2 * k + 1] =
+          shifted_word(reach.row(y - dy), word, -dx) & shifted_word(usable.row(y - dy), word, -dx);
+    }
   }
-  return reached & planes.holes.row(y)[word];
-}
 
-// The mean of the usable colours that reach a hole.
-Rgb mean_reached(const EdgePointImage& image, const BitPlane& usable, const Image& picture, int x,
-                 int y) {
-  Cell cell;
-  const auto add = [&](int px, int py) {
-    if (!usable.at(px, py)) return;
-    const float* const color = picture.values.data() + 3 * image.offset(px, py);
-    cell.sum += Rgb{color[0], color[1], color[2]};
-    ++cell.count;
-  };
-  for (std::size_t k = 0; k < kReachOffsets; ++k) {
-    const auto [dx, dy] = kReachOffset[k];
-    // Nothing beyond the picture is reached.
-    if (image.reach.at(k, x, y)) add(x + dx, y + dy);
-    const bool inside = x - dx >= 0 && x - dx < image.width_px && y - dy >= 0;
-    if (inside && image.reach.at(k, x - dx, y - dy)) add(x - dx, y - dy);
+  // Pixels that any reaches.
+  [[nodiscard]] std::uint64_t any() const {
+    std::uint64_t any = 0;
+    for (const std::uint64_t tap : taps_) any |= tap;
+    return any;
   }
-  return cell.sum * (1 / cell.count);
+
+  // The mean of the usable colours that reach a pixel, which is a bit of the word.
+  [[nodiscard]] Rgb mean_of(const Image& picture, int x, int y) const {
+    Cell cell;
+    const auto add = [&](int px, int py) {
+      const float* const color = picture.values.data() + picture.offset(px, py);
+      cell.sum += Rgb{color[0], color[1], color[2]};
+      ++cell.count;
+    };
+    const unsigned bit = unsigned(x) & 63U;
+    for (std::size_t k = 0; k < kReachOffsets; ++k) {
+      const auto [dx, dy] = kReachOffset[k];
+      if ((taps_[2 * k] >> bit & 1U) != 0) add(x + dx, y + dy);
+      if ((taps_[2 * k + 1] >> bit & 1U) != 0) add(x - dx, y - dy);
+    }
+    return cell.sum * (1 / cell.count);
+  }
+
+ private:
+  std::array<std::uint64_t, 2 * kReachOffsets> taps_;
+};
+
+// Of a row; and those of all holes.
+struct HoleWord {
+  int y, word;
+
+  friend bool operator==(const HoleWord&, const HoleWord&) = default;
+};
+std::vector<HoleWord> words_of(const EdgePointImage& image, std::span<const std::uint32_t> holes) {
+  std::vector<HoleWord> words;
+  const auto width = std::uint32_t(image.width_px);
+  for (const std::uint32_t hole : holes) {
+    const HoleWord word{int(hole / width), int(hole % width / 64)};
+    if (words.empty() || words.back() != word) words.push_back(word);
+  }
+  return words;
 }
+// That one thread looks at.
+constexpr std::size_t kWordsAtOnce = 64;
 
 struct FilledHole {
-  int x;
+  int x, y;
   Rgb color;
 };
 
 // Leaves those holes that nothing reaches.
-void spread_reached(const EdgePointImage& image, int threads, HolePlanes& planes, Image& picture) {
-  std::vector<std::vector<FilledHole>> filled(std::size_t(image.height_px));
+void spread_reached(const EdgePointImage& image, std::span<const HoleWord> words, int threads,
+                    HolePlanes& planes, Image& picture) {
+  std::vector<std::vector<FilledHole>> filled((words.size() + kWordsAtOnce - 1) / kWordsAtOnce);
   for (int step = 0; step < kSteps; ++step) {
-    parallel_for(filled.size(), {.grain = 16, .threads = threads}, [&](std::size_t row) {
-      const int y = int(row);
-      filled[row].clear();
-      for (int word = 0; word < planes.holes.words(); ++word) {
-        if (planes.holes.row(y)[word] == 0) continue;
-        std::uint64_t reached = find_reached(image, planes, y, word);
-        for (; reached != 0; reached &= reached - 1) {
+    parallel_for(filled.size(), {.grain = 1, .threads = threads}, [&](std::size_t i) {
+      filled[i].clear();
+      const std::size_t first = i * kWordsAtOnce;
+      for (const auto [y, word] :
+           words.subspan(first, std::min(kWordsAtOnce, words.size() - first))) {
+        const std::uint64_t holes = planes.holes.row(y)[word];
+        if (holes == 0) continue;
+        const UsableTaps taps(image, planes.usable, y, word);
+        for (std::uint64_t reached = holes & taps.any(); reached != 0; reached &= reached - 1) {
           const int x = 64 * word + std::countr_zero(reached);
-          filled[row].push_back({x, mean_reached(image, planes.usable, picture, x, y)});
+          filled[i].push_back({x, y, taps.mean_of(picture, x, y)});
         }
       }
     });
     bool any = false;
-    for (int y = 0; y < image.height_px; ++y) {
-      for (const FilledHole& hole : filled[std::size_t(y)]) {
-        set_color(picture, std::uint32_t(image.offset(hole.x, y)), hole.color);
-        set_bit(planes.holes, hole.x, y, false);
-        set_bit(planes.usable, hole.x, y, image.codes[image.offset(hole.x, y)].is_empty());
+    for (const std::vector<FilledHole>& part : filled) {
+      for (const FilledHole& hole : part) {
+        const std::size_t at = image.offset(hole.x, hole.y);
+        set_color(picture, std::uint32_t(at), hole.color);
+        set_bit(planes.holes, hole.x, hole.y, false);
+        set_bit(planes.usable, hole.x, hole.y, image.codes[at].is_empty());
         any = true;
       }
     }
@@ -198,8 +233,8 @@ void spread_reached(const EdgePointImage& image, int threads, HolePlanes& planes
 void fill_holes(const EdgePointImage& image, std::span<const std::uint32_t> holes, int threads,
                 Image& picture) {
   if (holes.empty()) return;
-  HolePlanes planes = make_planes(image, holes);
-  spread_reached(image, threads, planes, picture);
+  HolePlanes planes = make_planes(image, holes, threads);
+  spread_reached(image, words_of(image, holes), threads, planes, picture);
   Grids grids(picture, planes.holes);
   for (const std::uint32_t hole : holes) {
     const int pixel_x = int(hole % std::uint32_t(picture.width_px));
