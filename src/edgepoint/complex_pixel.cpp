@@ -88,11 +88,19 @@ class Builder {
   }
 
   [[nodiscard]] const Subpixels& subpixels() const { return out_; }
+  // All four of the pixel's own are.
+  [[nodiscard]] bool is_all_complex() const {
+    return std::ranges::all_of(out_.middle, [](PixelCode code) { return code.is_complex(); });
+  }
 
  private:
   void build() {
+    add_pixel(1, 1);
+    // Then nothing around is of use.
+    if (is_all_complex()) return;
     for (int j = 0; j < 3; ++j) {
       for (int i = 0; i < 3; ++i) {
+        if (i == 1 && j == 1) continue;
         const int px = x_ - 1 + i, py = y_ - 1 + j;
         if (px < 0 || py < 0 || px >= image_.width_px || py >= image_.height_px) continue;
         add_pixel(i, j);
@@ -267,7 +275,8 @@ Rgb reconstruct_complex_pixel(const EdgePointImage& image, int x, int y,
   const Builder builder(image, x, y, colors);
   const Subpixels& s = builder.subpixels();
   const Rgb fallback = colors.fallback;
-  const Matrices matrices = s.known != 0 ? find_matrices(s) : Matrices{};
+  const Matrices matrices =
+      s.known != 0 && !builder.is_all_complex() ? find_matrices(s) : Matrices{};
   Rgb sum;
   for (int k = 0; k < 4; ++k) {
     const int bit = bit_of(2 + k % 2, 2 + k / 2);

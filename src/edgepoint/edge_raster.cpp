@@ -166,13 +166,16 @@ ScreenEdge project_edge(const PixelView& view, const SoftEdge& edge) {
   if (edge.penumbra == Vec3f{}) return e;
   const Vec2d along{double(e.x1) - double(e.x0), double(e.y1) - double(e.y0)};
   if (along.x == 0 && along.y == 0) return {};
-  const double length = std::hypot(along.x, along.y);
   const Vec3d middle = (Vec3d(edge.edge.a) + Vec3d(edge.edge.b)) / 2;
   const Vec3d beyond = project(view, middle + Vec3d(edge.penumbra));
   // The other side lies behind the eye.
   if (!(beyond.z > 0)) return {};
   const Vec2d across{beyond.x / beyond.z - double(e.x0), beyond.y / beyond.z - double(e.y0)};
-  const double width = std::abs(across.x * along.y - across.y * along.x) / length;
+  const double area = std::abs(across.x * along.y - across.y * along.x);
+  // Most penumbras are wide, which is seen without a root.
+  constexpr double kSurelyWide = 1.001 * kWidestPenumbra * kWidestPenumbra;
+  if (area * area > kSurelyWide * (along.x * along.x + along.y * along.y)) return {};
+  const double width = area / std::hypot(along.x, along.y);
   if (width > kWidestPenumbra || (edge.is_umbra && width < kNarrowestPenumbra)) return {};
   return e;
 }

@@ -204,8 +204,13 @@ class HiddenFinder {
     const float part = 1 / (1 + kPixelsDeep * pixel_size_);
     const PointKey* const own = image_.points.data() + at;
     DepthFit fit;
-    for (const DepthTap& tap : std::span(taps.taps).first(taps.count)) {
-      if ((tap.pixels >> unsigned(bit) & 1U) == 0) continue;
+    // Which taps count can't be guessed, so they are found without a branch.
+    std::uint32_t with_sample = 0;
+    for (std::size_t k = 0; k < taps.count; ++k) {
+      with_sample |= std::uint32_t(taps.taps[k].pixels >> unsigned(bit) & 1U) << k;
+    }
+    for (; with_sample != 0; with_sample &= with_sample - 1) {
+      const DepthTap& tap = taps.taps[std::size_t(std::countr_zero(with_sample))];
       const PointKey other = own[tap.dy * std::ptrdiff_t(image_.width_px) + tap.dx];
       const float there = tap.inverse[bit];
       if (inverse < there * part && objects_[other.point()] != objects_[own->point()]) return true;
