@@ -1,4 +1,4 @@
-// bench_edge_point — the paper's Tables 1, 2 and 3 and its comparison with and without edges, in one command
+// bench_edge_point — the paper's Tables 1, 2 and 3, its comparison with and without edges, and how evenly frames come
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
@@ -10,6 +10,7 @@
 
 #include "edge_point/edge_finder.h"
 #include "edge_point/flight.h"
+#include "edge_point/motion.h"
 
 namespace {
 
@@ -22,6 +23,7 @@ struct Arguments {
   std::string mesh;
   FlightOptions flight;
   QualityOptions quality;
+  MotionOptions motion;
 };
 
 void say(const std::string& line) {
@@ -48,12 +50,15 @@ std::vector<FlightScene> make_scenes(const Arguments& arguments) {
   return scenes;
 }
 
+void set_size(const std::string& size, FlightOptions& options) {
+  if (std::sscanf(size.c_str(), "%dx%d", &options.width_px, &options.height_px) == 2) return;
+  throw std::runtime_error("--sizes: " + size + " is no size, such as 512x512");
+}
+
 void print_frames(const Arguments& arguments) {
   for (const std::string& size : arguments.sizes) {
     FlightOptions options = arguments.flight;
-    if (std::sscanf(size.c_str(), "%dx%d", &options.width_px, &options.height_px) != 2) {
-      throw std::runtime_error("--sizes: " + size + " is no size, such as 512x512");
-    }
+    set_size(size, options);
     say(fmt::format(
         "\n{} x {} pixels, milliseconds, medians of {} frames, {:.1f}% of pixels shaded a frame",
         options.width_px, options.height_px, options.frames, 100 * options.density));
@@ -80,6 +85,30 @@ void print_frames(const Arguments& arguments) {
           100 * double(c.median.classes.simple) / pixels,
           100 * double(c.median.classes.complex) / pixels, double(c.median.image_bytes) / pixels,
           double(c.median.cache_bytes) / 1e6, c.prepare_ms, c.engine_ms));
+    }
+  }
+}
+
+void print_motion(const Arguments& arguments) {
+  for (const std::string& size : arguments.sizes) {
+    MotionOptions options = arguments.motion;
+    options.flight = arguments.flight;
+    set_size(size, options.flight);
+    say(fmt::format(
+        "\n{} x {} pixels, camera, an object and a light move in each of {} frames, {:g} ms "
+        "between them; milliseconds",
+        options.flight.width_px, options.flight.height_px, options.flight.frames,
+        options.pause_ms));
+    say("scene      median 99 of 100 longest (at) longest / median | edges longest | delay of a "
+        "change | new points, shadow edges of a frame");
+    for (const FlightScene& scene : make_scenes(arguments)) {
+      const MotionTimes t = measure_motion(scene, options);
+      say(
+          fmt::format("{:10}{:7.2f} {:9.2f} {:7.2f} ({:3}) {:16.2f} | {:5.2f} {:7.2f} | {:17.1f} "
+                      "| {:.0f}, {:.0f}",
+                      scene.name, t.median_ms, t.most_of_100_ms, t.longest_ms, t.longest_at,
+                      t.longest_ms / t.median_ms, t.edges_ms, t.longest_edges_ms, t.delay_ms,
+                      t.new_points, t.shadow_edges));
     }
   }
 }
@@ -122,9 +151,11 @@ int main(int argc, char** argv) {
   app.add_option("--scenes", arguments.scenes, "rooms, chains, furnished, head, grid")
       ->delimiter(',');
   app.add_option("--mesh", arguments.mesh, "a scan of your own besides");
-  app.add_option("--tables", arguments.tables, "frames, quality, ablation, finder")->delimiter(',');
+  app.add_option("--tables", arguments.tables, "frames, motion, quality, ablation, finder")
+      ->delimiter(',');
   app.add_option("--sizes", arguments.sizes, "of frames")->delimiter(',');
   app.add_option("--frames", arguments.flight.frames, "of each flight");
+  app.add_option("--pause-ms", arguments.motion.pause_ms, "motion: between frames");
   app.add_option("--density", arguments.flight.density, "parts of the pixels shaded a frame");
   app.add_option("--reference-paths", arguments.quality.reference_paths, "of each pixel, twice");
   app.add_option("--point-paths", arguments.quality.point_paths, "of each point of the ablation");
@@ -137,16 +168,17 @@ int main(int argc, char** argv) {
     for (const std::string& table : arguments.tables) {
       if (table == "frames") {
         print_frames(arguments);
+      } else if (table == "motion") {
+        print_motion(arguments);
       } else if (table == "quality") {
         print_errors("Along the flight", arguments, measure_quality);
       } else if (table == "ablation") {
-        print_errors("From the same samples of a fifth of the pixels", arguments,
-                     measure_ablation);
+        print_errors("From the same samples of a fifth of the pixels", arguments, measure_ablation);
       } else if (table == "finder") {
         print_finder();
       } else {
         throw std::runtime_error("there is no table " + table +
-                                 "; there are frames, quality, ablation, finder");
+                                 "; there are frames, motion, quality, ablation, finder");
       }
     }
   } catch (const std::exception& error) {

@@ -199,7 +199,8 @@ FlightScene make_rooms() {
   }
   for (int i = 0; i < 5; ++i) b.put(ball, vase, {{}, {-4.6 + 0.45 * i, -0.9, 0.18}});
   b.look({-5.4, -1.6, 1.6}, {0.5, 0.5, 1.0}, 50);
-  return {"rooms", std::move(b.scene), EdgePointShader::gi, {-2, 0.2, 1}, 0.15};
+  const auto last = std::uint32_t(b.scene.objects.size() - 1);
+  return {"rooms", std::move(b.scene), EdgePointShader::gi, {-2, 0.2, 1}, 0.15, last};
 }
 
 FlightScene make_chains() {
@@ -218,7 +219,8 @@ FlightScene make_chains() {
   b.lamp({2.5, -3, 4}, 60);
   b.lamp({-3, -1.5, 3}, 25);
   b.look({1.5, -3.4, 2.6}, {0, 0, 0.4}, 42);
-  return {"chains", std::move(b.scene), EdgePointShader::direct, {0, 0, 0.4}, 0.4};
+  const auto last = std::uint32_t(b.scene.objects.size() - 1);
+  return {"chains", std::move(b.scene), EdgePointShader::direct, {0, 0, 0.4}, 0.4, last};
 }
 
 FlightScene make_furnished_room() {
@@ -260,7 +262,8 @@ FlightScene make_furnished_room() {
   b.panel({1.4, 0.2, 2.79}, 0.6, 8);
   b.lamp({1.2, -1.2, 2.2}, 6);
   b.look({2.2, -2.2, 1.7}, {-0.2, 0.7, 0.8}, 48);
-  return {"furnished", std::move(b.scene), EdgePointShader::gi, {-0.2, 0.7, 0.8}, 0.25};
+  const auto last = std::uint32_t(b.scene.objects.size() - 1);
+  return {"furnished", std::move(b.scene), EdgePointShader::gi, {-0.2, 0.7, 0.8}, 0.25, last};
 }
 
 FlightScene around_model(std::string name, Mesh mesh) {

@@ -4,6 +4,7 @@
 // Source     Bala, Walter, Greenberg (2003), §7.1, Table 1
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -16,8 +17,9 @@ struct FlightScene {
   std::string name;
   Scene scene;
   EdgePointShader shader = EdgePointShader::direct;
-  Vec3d pivot;            // the camera goes around it …
-  double turn_deg = 0.4;  // … by so much a frame
+  Vec3d pivot;              // the camera goes around it …
+  double turn_deg = 0.4;    // … by so much a frame
+  std::uint32_t mover = 0;  // the object that moves, where one does
 };
 
 std::vector<std::string> flight_scene_names();

@@ -93,7 +93,8 @@ class EdgePointEngine {
   // Of all objects without settings of their own.
   void set_rounding(const RoundingSettings& settings);
   // The same objects, some of them elsewhere, with other lights or roundings: what prepare_moved() and
-  // prepare_again() make of the scene before.
+  // prepare_again() make of the scene before. What was set last counts: moves, lights and roundings that were set
+  // before and do not show yet are dropped, those that are set after it change the new scene. The camera stays.
   void set_scene(std::shared_ptr<const PreparedScene> scene);
 
   // The scene of the last frame.

@@ -75,8 +75,7 @@ struct Corners {
 std::size_t EdgePointImage::bytes() const {
   std::size_t sum = crossings.upper.bytes() + crossings.left.bytes() + crossings.mid_row.bytes() +
                     crossings.mid_column.bytes() + codes.size() * sizeof(PixelCode) +
-                    points.size() * sizeof(PointKey) + samples.bytes() +
-                    occupied.bytes();
+                    points.size() * sizeof(PointKey) + samples.bytes() + occupied.bytes();
   for (const BitPlane& plane : corners.primary) sum += plane.bytes();
   for (const BitPlane& plane : corners.secondary) sum += plane.bytes();
   for (const BitPlane& plane : reach.planes) sum += plane.bytes();

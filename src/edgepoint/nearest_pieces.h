@@ -18,7 +18,7 @@ namespace arris {
 struct EventPiece {
   double s0 = 0, s1 = 0;  // s0 < s1
   double k0 = 0, k1 = 0;
-  std::uint32_t item = 0;      // its own number
+  std::uint32_t item = 0;                // its own number
   std::uint32_t receiver = 0, face = 0;  // the caller's
 
   [[nodiscard]] double nearness(double s) const {

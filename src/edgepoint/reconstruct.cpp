@@ -19,10 +19,11 @@ using Clock = std::chrono::steady_clock;
 constexpr int kSampleRows = 8;   // of five that are needed; a power of two
 constexpr int kPrimaryRows = 4;  // of three
 
-class Band {
+class BandMaker {
  public:
-  Band(const EdgePointImage& image, const PointCache& cache, const ReconstructionSettings& settings,
-       RowBand band, Image& picture, std::span<std::uint8_t> wanted)
+  BandMaker(const EdgePointImage& image, const PointCache& cache,
+            const ReconstructionSettings& settings, RowBand band, Image& picture,
+            std::span<std::uint8_t> wanted)
       : image_(image),
         cache_(cache),
         settings_(settings),
@@ -162,7 +163,7 @@ class Band {
 BandReport reconstruct_band(const EdgePointImage& image, const PointCache& cache,
                             const ReconstructionSettings& settings, RowBand band, Image& picture,
                             std::span<std::uint8_t> wanted) {
-  return Band(image, cache, settings, band, picture, wanted).run();
+  return BandMaker(image, cache, settings, band, picture, wanted).run();
 }
 
 }  // namespace arris

@@ -77,12 +77,8 @@ std::optional<Vec3d> ev_plane(Vec3d q, const Corners& l, std::size_t i) {
 ShadowEvent ev_wedge(const EdgeMesh& mesh, std::uint32_t q, const Corners& l, std::size_t i,
                      ShadowKind kind) {
   const Vec3d p = position(mesh, q);
-  return {kind,
-          {p, p},
-          {HomogeneousPoint{l[i]}, HomogeneousPoint{l[next(i)]}},
-          {q, q},
-          {kNone, kNone},
-          l[previous(i)] - l[i]};
+  return {kind,   {p, p},         {HomogeneousPoint{l[i]}, HomogeneousPoint{l[next(i)]}},
+          {q, q}, {kNone, kNone}, l[previous(i)] - l[i]};
 }
 
 Vec3d across_of_ve(const EdgeMesh& mesh, const MeshEdge& e, const Corners& l, std::size_t i) {

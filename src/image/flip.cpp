@@ -63,13 +63,13 @@ float hyab_distance(Rgb a, Rgb b) {
 
 using Kernel = std::vector<float>;  // odd length, centred
 
-struct Plane {
+struct ValuePlane {
   int width = 0, height = 0;
   std::vector<float> values;
 };
 
-Plane filter_rows(const Plane& in, const Kernel& kernel) {
-  Plane out{in.width, in.height, std::vector<float>(in.values.size())};
+ValuePlane filter_rows(const ValuePlane& in, const Kernel& kernel) {
+  ValuePlane out{in.width, in.height, std::vector<float>(in.values.size())};
   const int radius = int(kernel.size() / 2);
   for (int y = 0; y < in.height; ++y) {
     const float* row = &in.values[std::size_t(y) * std::size_t(in.width)];
@@ -84,8 +84,8 @@ Plane filter_rows(const Plane& in, const Kernel& kernel) {
   return out;
 }
 
-Plane filter_columns(const Plane& in, const Kernel& kernel) {
-  Plane out{in.width, in.height, std::vector<float>(in.values.size())};
+ValuePlane filter_columns(const ValuePlane& in, const Kernel& kernel) {
+  ValuePlane out{in.width, in.height, std::vector<float>(in.values.size())};
   const int radius = int(kernel.size() / 2);
   const std::size_t width = std::size_t(in.width);
   for (int y = 0; y < in.height; ++y) {
@@ -119,10 +119,10 @@ struct SensitivityTerm {
 };
 
 // The eye's low-pass filter of one opponent channel: a sum of Gaussians, each separable.
-Plane filter_sensitivity(const Plane& in, const std::vector<SensitivityTerm>& terms) {
+ValuePlane filter_sensitivity(const ValuePlane& in, const std::vector<SensitivityTerm>& terms) {
   constexpr double kWidestB = 0.04;
   const int radius = int(std::ceil(3 * std::sqrt(kWidestB / (2 * kPi * kPi)) * kPixelsPerDegree));
-  Plane out{in.width, in.height, std::vector<float>(in.values.size())};
+  ValuePlane out{in.width, in.height, std::vector<float>(in.values.size())};
   double total = 0;
   for (const SensitivityTerm& term : terms) {
     const Kernel kernel = make_kernel(radius, [&](double i) {
@@ -131,7 +131,7 @@ Plane filter_sensitivity(const Plane& in, const std::vector<SensitivityTerm>& te
     });
     const double weight = term.a * std::sqrt(kPi / term.b);
     total += weight * sum_of(kernel) * sum_of(kernel);
-    const Plane filtered = filter_columns(filter_rows(in, kernel), kernel);
+    const ValuePlane filtered = filter_columns(filter_rows(in, kernel), kernel);
     for (std::size_t i = 0; i < out.values.size(); ++i) {
       out.values[i] += float(weight) * filtered.values[i];
     }
@@ -143,12 +143,12 @@ Plane filter_sensitivity(const Plane& in, const std::vector<SensitivityTerm>& te
 // ---- the two halves of the measure
 
 struct Opponent {
-  std::array<Plane, 3> planes;  // Y, Cx, Cz
+  std::array<ValuePlane, 3> planes;  // Y, Cx, Cz
 };
 
 Opponent opponent_planes(const Image& image) {
   Opponent out;
-  for (Plane& plane : out.planes) {
+  for (ValuePlane& plane : out.planes) {
     plane = {image.width_px, image.height_px, std::vector<float>(image.values.size() / 3)};
   }
   const auto shown = [](float v) { return v > 0 ? std::min(v, 1.0F) : 0.0F; };
@@ -161,9 +161,9 @@ Opponent opponent_planes(const Image& image) {
 }
 
 std::vector<Rgb> seen_colors(const Opponent& opponent) {
-  const Plane y = filter_sensitivity(opponent.planes[0], {{1, 0.0047}});
-  const Plane cx = filter_sensitivity(opponent.planes[1], {{1, 0.0053}});
-  const Plane cz = filter_sensitivity(opponent.planes[2], {{34.1, 0.04}, {13.5, 0.025}});
+  const ValuePlane y = filter_sensitivity(opponent.planes[0], {{1, 0.0047}});
+  const ValuePlane cx = filter_sensitivity(opponent.planes[1], {{1, 0.0053}});
+  const ValuePlane cz = filter_sensitivity(opponent.planes[2], {{34.1, 0.04}, {13.5, 0.025}});
   std::vector<Rgb> colors(y.values.size());
   for (std::size_t i = 0; i < colors.size(); ++i) {
     const Rgb rgb = rgb_from_opponent({y.values[i], cx.values[i], cz.values[i]});
@@ -193,8 +193,8 @@ struct Features {
   std::vector<float> edges, points;  // magnitudes
 };
 
-Features find_features(const Plane& opponent_y) {
-  Plane y = opponent_y;
+Features find_features(const ValuePlane& opponent_y) {
+  ValuePlane y = opponent_y;
   for (float& value : y.values) value = (value + 16) / 116;
   const double sigma = 0.5 * kFeatureDegrees * kPixelsPerDegree;
   const int radius = int(std::ceil(3 * sigma));
@@ -208,8 +208,8 @@ Features find_features(const Plane& opponent_y) {
   balance(edge);
   balance(point);
   const auto magnitudes = [&](const Kernel& kernel) {
-    const Plane dx = filter_columns(filter_rows(y, kernel), smooth);
-    const Plane dy = filter_columns(filter_rows(y, smooth), kernel);
+    const ValuePlane dx = filter_columns(filter_rows(y, kernel), smooth);
+    const ValuePlane dy = filter_columns(filter_rows(y, smooth), kernel);
     std::vector<float> out(dx.values.size());
     for (std::size_t i = 0; i < out.size(); ++i) out[i] = std::hypot(dx.values[i], dy.values[i]);
     return out;

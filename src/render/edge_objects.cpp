@@ -192,20 +192,30 @@ void EdgeObjects::set_rounded(const PreparedScene& prepared, ObjectEdges& object
   std::ranges::sort(object.rounded_between);
 }
 
-bool EdgeObjects::update_roundings(const PreparedScene& before, const PreparedScene& after) {
-  bool changed = false;
-  for (ObjectEdges& object : objects_) {
-    if (!object.mesh) continue;
+std::shared_ptr<const EdgeObjects> EdgeObjects::with_roundings(const PreparedScene& before,
+                                                               const PreparedScene& after) const {
+  std::shared_ptr<EdgeObjects> out;
+  for (std::size_t i = 0; i < objects_.size(); ++i) {
+    const std::uint32_t geometry = objects_[i].geometry;
+    if (!objects_[i].mesh || before.rounding().geometries[geometry].rounding ==
+                                 after.rounding().geometries[geometry].rounding) {
+      continue;
+    }
+    if (!out) out = std::make_shared<EdgeObjects>(*this);
+    set_rounded(after, out->objects_[i]);
+  }
+  return out;
+}
+
+bool EdgeObjects::is_rounded_anew(const PreparedScene& before, const PreparedScene& after) const {
+  return std::ranges::any_of(objects_, [&](const ObjectEdges& object) {
+    if (!object.mesh) return false;
     const Rounding* const old = before.rounding().geometries[object.geometry].rounding;
     const Rounding* const now = after.rounding().geometries[object.geometry].rounding;
-    if (old == now) continue;
-    set_rounded(after, object);
-    // An object that has moved may have been rounded again as it was.
-    changed = changed || old == nullptr || now == nullptr ||
-              old->data().radius != now->data().radius ||
-              old->data().arcs.size() != now->data().arcs.size();
-  }
-  return changed;
+    if (old == now) return false;
+    return old == nullptr || now == nullptr || old->data().radius != now->data().radius ||
+           old->data().arcs.size() != now->data().arcs.size();
+  });
 }
 
 Sphere EdgeObjects::bounding_sphere(const PreparedScene& prepared, std::uint32_t object) const {

@@ -66,8 +66,11 @@ class EdgeObjects {
   [[nodiscard]] const CsgEdges* solid(std::uint32_t object) const {
     return object < objects_.size() ? objects_[object].solid.get() : nullptr;
   }
-  // Takes in which edges the other scene's roundings round; true if they are other ones.
-  bool update_roundings(const PreparedScene& before, const PreparedScene& after);
+  // These of `before`, with the edges that the roundings of `after` round; null if they are the same.
+  [[nodiscard]] std::shared_ptr<const EdgeObjects> with_roundings(const PreparedScene& before,
+                                                                  const PreparedScene& after) const;
+  // Whether roundings look different; those of an object that has moved may have been made again as they were.
+  [[nodiscard]] bool is_rounded_anew(const PreparedScene& before, const PreparedScene& after) const;
   [[nodiscard]] Sphere bounding_sphere(const PreparedScene& prepared, std::uint32_t object) const;
 
  private:

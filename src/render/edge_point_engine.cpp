@@ -38,8 +38,6 @@ double milliseconds_since(Clock::time_point start) {
 
 // Points are kept for what has left the picture, too.
 constexpr double kCachePerPixel = 1.5;
-// Of shadows, in one frame: about 50 ms.
-constexpr std::size_t kShadowEvents = 20'000;
 // A point's paths and those of its neighbours stand for so many of the pixel's own, in a view that stands still.
 constexpr float kNeighbors = 2;
 // Workers are asked for this much more than they did last time.
@@ -83,18 +81,18 @@ void check_view(const Scene& scene, const Camera& camera) {
 class EdgePointEngine::Impl {
  public:
   Impl(std::shared_ptr<const PreparedScene> scene, const EdgePointSettings& settings)
-      : scene_(std::move(scene)),
-        settings_(checked(settings)),
+      : settings_(checked(settings)),
+        shown_(first_shown(std::move(scene), settings.threads)),
         shader_(make_point_shader(settings)),
-        image_(scene_->scene().image),
-        camera_(*scene_->scene().camera),
-        objects_(*scene_, settings.threads),
-        updater_(settings.synchronous ? UpdateMode::at_once : UpdateMode::beside, settings.threads),
-        lights_(std::make_shared<const std::vector<ShadowLight>>(shadow_lights(*scene_))),
+        image_(shown_.scene->scene().image),
+        camera_(*shown_.scene->scene().camera),
+        updater_(shown_, {settings.synchronous ? UpdateMode::at_once : UpdateMode::beside,
+                          settings.use_edges && settings.shadow_edges, settings.threads}),
+        lights_(std::make_shared<const std::vector<ShadowLight>>(shadow_lights(*shown_.scene))),
         cache_(std::size_t(std::ceil(kCachePerPixel * pixel_count()))),
         maker_(image_.width_px, image_.height_px),
         picture_(image_.width_px, image_.height_px, 3),
-        tints_(scene_->scene()),
+        tints_(shown_.scene->scene()),
         film_(maker_.image().codes.size()),
         wanted_(film_size(), 255),
         choice_(settings.trace_below_ms,
@@ -109,17 +107,27 @@ class EdgePointEngine::Impl {
     view_changed();
   }
 
-  void set_scene(std::shared_ptr<const PreparedScene> scene);
+  // Instead of all changes so far.
+  void set_scene(std::shared_ptr<const PreparedScene> scene) {
+    updater_.drop();
+    if (scene == shown_.scene) return;
+    ShownScene next = shown_;
+    next.scene = std::move(scene);
+    if (auto objects = next.objects->with_roundings(*shown_.scene, *next.scene)) {
+      next.objects = std::move(objects);
+    }
+    show(std::move(next));
+  }
   [[nodiscard]] SceneChanges& changes() { return updater_.changes(); }
-  [[nodiscard]] const std::shared_ptr<const PreparedScene>& scene() const { return scene_; }
+  [[nodiscard]] const std::shared_ptr<const PreparedScene>& scene() const { return shown_.scene; }
 
   const Image& next_frame() {
     if (workers_) workers_->set_paused(true);
     stats_ = {};
-    if (std::shared_ptr<const PreparedScene> changed = updater_.poll(scene_)) {
-      set_scene(std::move(changed));
-    }
-    if (!camera_checked_) check_view(scene_->scene(), camera_);
+    ShownScene next = shown_;
+    updater_.poll(next);
+    show(std::move(next));
+    if (!camera_checked_) check_view(shown_.scene->scene(), camera_);
     camera_checked_ = true;
     const CameraRays rays = make_camera_rays(camera_, image_);
     if (workers_) collect();
@@ -155,6 +163,12 @@ class EdgePointEngine::Impl {
   // The last frame showed the same.
   [[nodiscard]] bool is_still() const { return still_frames_ > 1; }
 
+  static ShownScene first_shown(std::shared_ptr<const PreparedScene> scene, int threads) {
+    auto objects = std::make_shared<const EdgeObjects>(*scene, threads);
+    return {std::move(scene), std::move(objects), std::make_shared<const std::vector<SoftEdge>>()};
+  }
+  void show(ShownScene next);
+
   void view_changed() {
     still_frames_ = 0;
     ++view_;
@@ -167,20 +181,22 @@ class EdgePointEngine::Impl {
     const Clock::time_point start = Clock::now();
     EdgeTotals totals;
     std::vector<std::vector<WorldEdge>> found;
-    if (settings_.use_edges) found = objects_.find_edges(*scene_, view, settings_.threads, totals);
-    std::vector<std::span<const WorldEdge>> edges(found.begin(), found.end());
-    if (settings_.use_edges && settings_.shadow_edges) {
-      shadows_.update(*scene_, objects_, kShadowEvents);
-      totals.shadow = shadows_.edges().size();
+    if (settings_.use_edges) {
+      found = shown_.objects->find_edges(*shown_.scene, view, settings_.threads, totals);
     }
+    std::vector<std::span<const WorldEdge>> edges(found.begin(), found.end());
+    const bool shadows = settings_.use_edges && settings_.shadow_edges;
+    if (shadows && !workers_) updater_.find_shadows(shown_);
+    totals.shadow = shown_.shadow_edges->size();
     stats_.stages.edges = milliseconds_since(start);
     FrameSettings frame{frame_, settings_.complex_filter, settings_.threads, {}};
     if (settings_.sharp_textures) {
       frame.find_tints = [&](const EdgePointImage& image) {
-        return tints_.update(*scene_, camera, cache_, image, settings_.threads);
+        return tints_.update(*shown_.scene, camera, cache_, image, settings_.threads);
       };
     }
-    const FrameReport report = maker_.make(view, {edges, shadows_.edges()}, cache_, frame, picture_);
+    const FrameReport report =
+        maker_.make(view, {edges, *shown_.shadow_edges}, cache_, frame, picture_);
     film_.blend_into(picture_, kNeighbors * float(shader_.paths), settings_.threads);
     stats_.stages.total = frame_ms_ = milliseconds_since(start);
     keep_report(report, totals);
@@ -203,7 +219,7 @@ class EdgePointEngine::Impl {
     parallel_for(rays.size(), {.grain = 1, .threads = settings_.threads}, [&](std::size_t y) {
       for (int x = 0; x < image_.width_px; ++x) {
         const std::size_t at = maker_.image().offset(x, int(y));
-        sums[at] = shade_pixel(*scene_, camera, filter, shader_,
+        sums[at] = shade_pixel(*shown_.scene, camera, filter, shader_,
                                {x, int(y), film_.paths_of(at), paths}, rays[y]);
       }
     });
@@ -232,7 +248,7 @@ class EdgePointEngine::Impl {
   [[nodiscard]] std::shared_ptr<const ShadePlan> make_plan(const CameraRays& camera,
                                                            double density) {
     auto plan = std::make_shared<ShadePlan>();
-    plan->scene = scene_;
+    plan->scene = shown_.scene;
     if (settings_.use_edges && settings_.shadow_edges) plan->lights = lights_;
     plan->camera = camera;
     plan->filter = PixelFilter(image_.filter);
@@ -300,12 +316,12 @@ class EdgePointEngine::Impl {
   }
 
   void take(const ShadePlan& plan, const ShadeResults& results) {
-    if (plan.scene == scene_) {
+    if (plan.scene == shown_.scene) {
       cache_.add(results.points, frame_);
     } else {
       cache_.add(moved_points(*plan.scene, results.points), frame_);
     }
-    shadows_.add(results.triples);
+    updater_.add(results.triples);
     if (plan.view == view_) {
       for (const PixelPaths& p : results.pixels) film_.add(p.pixel, p.sum, p.paths);
     }
@@ -318,7 +334,7 @@ class EdgePointEngine::Impl {
   // Points that were shaded in a scene before, where their objects are now. Their light is that of then.
   [[nodiscard]] std::vector<ShadedPoint> moved_points(const PreparedScene& before,
                                                       std::vector<ShadedPoint> points) const {
-    const std::vector<Object>&then = before.scene().objects, &now = scene_->scene().objects;
+    const std::vector<Object>&then = before.scene().objects, &now = shown_.scene->scene().objects;
     for (ShadedPoint& point : points) {
       if (point.object >= now.size()) continue;
       const Affine3d &from = then[point.object].world_from_object,
@@ -334,14 +350,12 @@ class EdgePointEngine::Impl {
   // Pixels that want a point so much get one, also in a view that stands still.
   static constexpr std::uint8_t kUrgent = 128;
 
-  std::shared_ptr<const PreparedScene> scene_;
   EdgePointSettings settings_;
+  ShownScene shown_;
   PointShader shader_;
   ImageSettings image_;
   Camera camera_;
-  EdgeObjects objects_;
   SceneUpdater updater_;
-  ShadowFinder shadows_;
   std::shared_ptr<const std::vector<ShadowLight>> lights_;
   PointCache cache_;
   FrameMaker maker_;
@@ -381,9 +395,10 @@ void EdgePointEngine::Impl::keep_report(const FrameReport& report, const EdgeTot
   stats_.image_bytes = maker_.image().bytes();
 }
 
-void EdgePointEngine::Impl::set_scene(std::shared_ptr<const PreparedScene> scene) {
-  if (scene == scene_) return;
-  const Scene &before = scene_->scene(), &after = scene->scene();
+void EdgePointEngine::Impl::show(ShownScene next) {
+  std::swap(shown_, next);
+  if (next.scene == shown_.scene) return;
+  const Scene &before = next.scene->scene(), &after = shown_.scene->scene();
   std::vector<Sphere> moved;
   std::vector<std::optional<Affine3d>> to_from(after.objects.size());
   for (std::uint32_t i = 0; i < after.objects.size(); ++i) {
@@ -391,24 +406,20 @@ void EdgePointEngine::Impl::set_scene(std::shared_ptr<const PreparedScene> scene
                    &to = after.objects[i].world_from_object;
     if (from == to) continue;
     to_from[i] = to * inverse(from);
-    shadows_.object_moved(i);
-    moved.push_back(objects_.bounding_sphere(*scene_, i));
-    moved.push_back(objects_.bounding_sphere(*scene, i));
+    moved.push_back(shown_.objects->bounding_sphere(*next.scene, i));
+    moved.push_back(shown_.objects->bounding_sphere(*shown_.scene, i));
   }
   if (!moved.empty()) {
     cache_.move(to_from, frame_);
     make_shadowed_old(*lights_, moved, frame_, cache_);
   }
-  const bool rounded_anew = objects_.update_roundings(*scene_, *scene);
-  auto lights = std::make_shared<const std::vector<ShadowLight>>(shadow_lights(*scene));
-  const bool lights_changed = find_changed_lights(before, after, shadows_);
-  if (rounded_anew || lights_changed) {
+  if (find_changed_lights(before, after).any ||
+      shown_.objects->is_rounded_anew(*next.scene, *shown_.scene)) {
     const auto all = [](auto...) { return true; };
     cache_.make_old(frame_, all, all);
   }
-  if (rounded_anew) shadows_.all_changed();
-  lights_ = std::move(lights);
-  scene_ = std::move(scene);
+  lights_ = std::make_shared<const std::vector<ShadowLight>>(shadow_lights(*shown_.scene));
+  updater_.retire(std::move(next.scene));
   view_changed();
 }
 

@@ -2,14 +2,17 @@
 
 #include <fmt/format.h>
 
-#include <chrono>
 #include <string_view>
 #include <utility>
 
 #include "arris/error.h"
+#include "base/flush_denormals.h"
 
 namespace arris {
 namespace {
+
+// Of shadows, in one preparation: about 50 ms.
+constexpr std::size_t kShadowEvents = 20'000;
 
 void check_index(std::string_view kind, std::size_t index, std::size_t count) {
   if (index < count) return;
@@ -39,22 +42,147 @@ std::shared_ptr<const PreparedScene> apply_changes(const PreparedScene& prepared
   return out;
 }
 
-std::shared_ptr<const PreparedScene> SceneUpdater::poll(
-    const std::shared_ptr<const PreparedScene>& scene) {
-  std::shared_ptr<const PreparedScene> ready;
-  if (under_way_.valid()) {
-    if (under_way_.wait_for(std::chrono::seconds(0)) != std::future_status::ready) return nullptr;
-    ready = under_way_.get();
+SceneUpdater::SceneUpdater(const ShownScene& first, const Settings& settings)
+    : settings_(settings), found_in_(first.scene) {
+  if (settings.mode == UpdateMode::beside) thread_ = std::thread([this] { run(); });
+}
+
+SceneUpdater::~SceneUpdater() {
+  if (!thread_.joinable()) return;
+  {
+    const std::lock_guard lock(mutex_);
+    stopped_ = true;
   }
-  if (changes_.is_empty()) return ready;
-  const std::shared_ptr<const PreparedScene> before = ready ? ready : scene;
-  SceneChanges changes = std::exchange(changes_, {});
-  if (mode_ == UpdateMode::at_once) return apply_changes(*before, changes, threads_);
-  under_way_ =
-      std::async(std::launch::async, [before, changes = std::move(changes), threads = threads_] {
-        return apply_changes(*before, changes, threads);
-      });
-  return ready;
+  wake_.notify_all();
+  thread_.join();
+}
+
+void SceneUpdater::drop() {
+  changes_ = {};
+  const std::lock_guard lock(mutex_);
+  dropped_ = stage_ != Stage::idle;
+}
+
+void SceneUpdater::add(const std::vector<ShadowTriple>& triples) {
+  triples_.insert(triples_.end(), triples.begin(), triples.end());
+}
+
+void SceneUpdater::poll(ShownScene& shown) {
+  if (settings_.mode == UpdateMode::at_once) {
+    if (!changes_.is_empty()) prepare(shown, std::exchange(changes_, {}));
+    return;
+  }
+  free_retired();
+  const std::lock_guard lock(mutex_);
+  if (stage_ == Stage::asked) return;
+  if (stage_ == Stage::done) {
+    stage_ = Stage::idle;
+    ShownScene ready = std::exchange(shown_, {});
+    const std::exception_ptr error = std::exchange(error_, nullptr);
+    if (std::exchange(dropped_, false)) {
+      garbage_.push_back(std::move(ready.scene));
+    } else if (error) {
+      std::rethrow_exception(error);
+    } else {
+      shown = std::move(ready);
+    }
+  }
+  const bool is_found = shown.scene == found_in_ && complete_ && triples_.empty();
+  if (changes_.is_empty() && (is_found || !settings_.shadow_edges)) return;
+  shown_ = shown;
+  asked_ = std::exchange(changes_, {});
+  asked_triples_ = std::exchange(triples_, {});
+  stage_ = Stage::asked;
+  wake_.notify_all();
+}
+
+void SceneUpdater::find_shadows(ShownScene& shown) {
+  update_shadows(shown, std::exchange(triples_, {}));
+}
+
+void SceneUpdater::retire(ScenePtr scene) {
+  if (settings_.mode == UpdateMode::beside) retired_.push_back(std::move(scene));
+}
+
+// Whoever holds a scene last frees it, so the thread gets those that nobody else holds any more.
+void SceneUpdater::free_retired() {
+  std::vector<ScenePtr> unused;
+  std::erase_if(retired_, [&](ScenePtr& scene) {
+    if (scene.use_count() > 1) return false;
+    unused.push_back(std::move(scene));
+    return true;
+  });
+  if (unused.empty()) return;
+  {
+    const std::lock_guard lock(mutex_);
+    for (ScenePtr& scene : unused) garbage_.push_back(std::move(scene));
+  }
+  wake_.notify_all();
+}
+
+void SceneUpdater::prepare(ShownScene& shown, const SceneChanges& changes) const {
+  ScenePtr after = apply_changes(*shown.scene, changes, settings_.threads);
+  if (auto objects = shown.objects->with_roundings(*shown.scene, *after)) {
+    shown.objects = std::move(objects);
+  }
+  shown.scene = std::move(after);
+}
+
+void SceneUpdater::update_shadows(ShownScene& shown, const std::vector<ShadowTriple>& triples) {
+  finder_.add(triples);
+  if (shown.scene != found_in_) {
+    const Scene &before = found_in_->scene(), &after = shown.scene->scene();
+    for (std::uint32_t i = 0; i < after.objects.size(); ++i) {
+      if (before.objects[i].world_from_object != after.objects[i].world_from_object) {
+        finder_.object_moved(i);
+      }
+    }
+    const LightChanges lights = find_changed_lights(before, after);
+    for (const std::uint32_t light : lights.moved) finder_.light_moved(light);
+    if (lights.renumbered || shown.objects->is_rounded_anew(*found_in_, *shown.scene)) {
+      finder_.all_changed();
+    }
+  }
+  const bool complete = finder_.update(*shown.scene, *shown.objects, kShadowEvents);
+  shown.shadow_edges = finder_.shared_edges();
+  ScenePtr before = shown.scene;
+  const std::lock_guard lock(mutex_);
+  complete_ = complete;
+  std::swap(found_in_, before);
+  if (settings_.mode == UpdateMode::beside) garbage_.push_back(std::move(before));
+}
+
+void SceneUpdater::run() {
+  const FlushDenormals flush;
+  std::unique_lock lock(mutex_);
+  for (;;) {
+    wake_.wait(lock, [&] { return stopped_ || stage_ == Stage::asked || !garbage_.empty(); });
+    if (stopped_) return;
+    if (stage_ == Stage::asked) {
+      ShownScene shown = std::exchange(shown_, {});
+      const SceneChanges changes = std::exchange(asked_, {});
+      const std::vector<ShadowTriple> triples = std::exchange(asked_triples_, {});
+      lock.unlock();
+      std::exception_ptr error;
+      ScenePtr before = shown.scene;
+      try {
+        if (!changes.is_empty()) prepare(shown, changes);
+        if (settings_.shadow_edges) update_shadows(shown, triples);
+      } catch (...) {
+        error = std::current_exception();
+      }
+      lock.lock();
+      shown_ = std::move(shown);
+      error_ = error;
+      stage_ = Stage::done;
+      garbage_.push_back(std::move(before));
+      continue;
+    }
+    std::vector<ScenePtr> garbage = std::exchange(garbage_, {});
+    lock.unlock();
+    garbage.clear();
+    lock.lock();
+  }
 }
 
 }  // namespace arris

@@ -63,7 +63,8 @@ void ShadeWorkers::run() {
     const auto start = std::chrono::steady_clock::now();
     try {
       const std::size_t last = std::min(first + ShadePlan::kStep, plan->items.size());
-      for (std::size_t i = first; i < last; ++i) shade_item(*plan, plan->items[i], results);
+      for (std::size_t i = first; i < last && !paused_; ++i)
+        shade_item(*plan, plan->items[i], results);
     } catch (...) {
       error = std::current_exception();
     }

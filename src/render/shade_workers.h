@@ -1,12 +1,14 @@
 // shade_workers.h — threads that shade while frames are made
 // What       Threads take items of the newest plan and keep the results until they are collected. While paused they
-//            begin no item, so that a frame has the processor for itself.
+//            begin no item, so that a frame has the processor for itself; what they leave of a step they took is asked
+//            for again by the next plan.
 // Guarantee  set_plan(), collect() and the pauses wait for no shading: at most for a lock that is held to copy
 //            results
 // Limits     items that have begun under an older plan are finished and kept with its number
 // Source     Bala, Walter, Greenberg (2003), Fig. 2: the asynchronous shader
 #pragma once
 
+#include <atomic>
 #include <condition_variable>
 #include <cstdint>
 #include <exception>
@@ -45,7 +47,8 @@ class ShadeWorkers {
   std::shared_ptr<const ShadePlan> plan_;
   std::vector<Batch> batches_;
   std::exception_ptr error_;
-  bool paused_ = false, stopped_ = false;
+  bool stopped_ = false;
+  std::atomic<bool> paused_{false};  // changes under the mutex
   std::vector<std::thread> threads_;
 };
 

@@ -120,20 +120,18 @@ LightChange change_of(const A& /*a*/, const B& /*b*/) {
 
 }  // namespace
 
-bool find_changed_lights(const Scene& before, const Scene& after, ShadowFinder& finder) {
-  if (before.lights.size() != after.lights.size()) {
-    finder.all_changed();
-    return true;
-  }
-  bool any = false;
+LightChanges find_changed_lights(const Scene& before, const Scene& after) {
+  LightChanges changes;
+  changes.any = changes.renumbered = before.lights.size() != after.lights.size();
+  if (changes.renumbered) return changes;
   for (std::uint32_t i = 0; i < after.lights.size(); ++i) {
     const LightChange change =
         std::visit([](const auto& a, const auto& b) { return change_of(a, b); }, before.lights[i],
                    after.lights[i]);
-    if (change.moved) finder.light_moved(i);
-    any = any || change.any;
+    if (change.moved) changes.moved.push_back(i);
+    changes.any = changes.any || change.any;
   }
-  return any;
+  return changes;
 }
 
 void ShadowFinder::add(std::span<const ShadowTriple> triples) {
@@ -158,6 +156,37 @@ void ShadowFinder::light_moved(std::uint32_t light) {
 
 void ShadowFinder::all_changed() {
   pairs_.clear();
+  edges_ = std::make_shared<const std::vector<SoftEdge>>();
+}
+
+bool ShadowFinder::find_pair(const PreparedScene& scene, const EdgeObjects& objects,
+                             const ShadowLight& light, std::uint32_t blocker, Pair& pair) const {
+  const std::optional<EdgeObjects::Parts> parts = objects.parts(scene, blocker);
+  const CsgEdges* const solid = objects.solid(blocker);
+  const auto* const point = std::get_if<HomogeneousPoint>(&light);
+  if (!parts && (solid == nullptr || point == nullptr)) return false;
+  if (!pair.events_known) {
+    const Sphere around = objects.bounding_sphere(scene, blocker);
+    const Affine3d& world = scene.scene().objects[blocker].world_from_object;
+    pair.events =
+        parts ? find_events(*parts, light, around) : solid_events(*solid, world, *point, around);
+  }
+  std::vector<ShadowReceiver> receivers;
+  pair.edges.clear();
+  for (const std::uint32_t receiver : pair.receivers) {
+    const std::optional<EdgeObjects::Parts> r = objects.parts(scene, receiver);
+    if (r) receivers.push_back({r->faces, *r->world, receiver == blocker, r->voids});
+    if (const CsgEdges* const on = objects.solid(receiver)) {
+      const std::vector<WorldEdge> found =
+          find_edges_on_solid(pair.events, *on, scene.scene().objects[receiver].world_from_object);
+      for (const WorldEdge& edge : found) pair.edges.push_back({edge, {}, false});
+    }
+  }
+  for (const ShadowEdge& edge : find_shadow_edges(pair.events, receivers)) {
+    pair.edges.push_back({{edge.a, edge.b}, edge.penumbra, edge.kind == ShadowKind::umbral});
+  }
+  pair.events_known = pair.edges_known = true;
+  return true;
 }
 
 bool ShadowFinder::update(const PreparedScene& scene, const EdgeObjects& objects,
@@ -165,49 +194,29 @@ bool ShadowFinder::update(const PreparedScene& scene, const EdgeObjects& objects
   bool changed = false, complete = true;
   std::size_t done = 0;
   std::optional<std::vector<ShadowLight>> lights;
-  for (auto& [key, pair] : pairs_) {
+  auto at = pairs_.lower_bound(next_);
+  for (std::size_t i = 0; i < pairs_.size(); ++i, ++at) {
+    if (at == pairs_.end()) at = pairs_.begin();
+    auto& [key, pair] = *at;
     if (pair.edges_known) continue;
     if (done > most_events) {
       complete = false;
+      next_ = key;
       break;
     }
     if (!lights) lights = shadow_lights(scene);
     const auto& [light, blocker] = key;
     if (light >= lights->size()) continue;
-    const std::optional<EdgeObjects::Parts> parts = objects.parts(scene, blocker);
-    const CsgEdges* const solid = objects.solid(blocker);
-    const auto* const point = std::get_if<HomogeneousPoint>(&(*lights)[light]);
-    if (!parts && (solid == nullptr || point == nullptr)) continue;
-    if (!pair.events_known) {
-      const Sphere around = objects.bounding_sphere(scene, blocker);
-      const Affine3d& world = scene.scene().objects[blocker].world_from_object;
-      pair.events = parts ? find_events(*parts, (*lights)[light], around)
-                          : solid_events(*solid, world, *point, around);
-    }
-    std::vector<ShadowReceiver> receivers;
-    pair.edges.clear();
-    for (const std::uint32_t receiver : pair.receivers) {
-      const std::optional<EdgeObjects::Parts> r = objects.parts(scene, receiver);
-      if (r) receivers.push_back({r->faces, *r->world, receiver == blocker, r->voids});
-      if (const CsgEdges* const on = objects.solid(receiver)) {
-        const std::vector<WorldEdge> found = find_edges_on_solid(
-            pair.events, *on, scene.scene().objects[receiver].world_from_object);
-        for (const WorldEdge& edge : found) pair.edges.push_back({edge, {}, false});
-      }
-    }
-    for (const ShadowEdge& edge : find_shadow_edges(pair.events, receivers)) {
-      pair.edges.push_back(
-          {{edge.a, edge.b}, edge.penumbra, edge.kind == ShadowKind::umbral});
-    }
+    if (!find_pair(scene, objects, (*lights)[light], blocker, pair)) continue;
     done += pair.events.size() * pair.receivers.size();
-    pair.events_known = pair.edges_known = true;
     changed = true;
   }
   if (changed) {
-    edges_.clear();
+    auto edges = std::make_shared<std::vector<SoftEdge>>();
     for (const auto& [key, pair] : pairs_) {
-      edges_.insert(edges_.end(), pair.edges.begin(), pair.edges.end());
+      edges->insert(edges->end(), pair.edges.begin(), pair.edges.end());
     }
+    edges_ = std::move(edges);
   }
   return complete;
 }

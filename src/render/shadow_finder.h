@@ -14,6 +14,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <map>
+#include <memory>
 #include <set>
 #include <span>
 #include <tuple>
@@ -48,7 +49,9 @@ class ShadowFinder {
 
   // Finds what is missing, up to about so many events; false if some of it waits.
   bool update(const PreparedScene& scene, const EdgeObjects& objects, std::size_t most_events);
-  [[nodiscard]] const std::vector<SoftEdge>& edges() const { return edges_; }
+  [[nodiscard]] const std::vector<SoftEdge>& edges() const { return *edges_; }
+  // The same, to be kept: the next update leaves them alone.
+  [[nodiscard]] std::shared_ptr<const std::vector<SoftEdge>> shared_edges() const { return edges_; }
 
  private:
   struct Pair {
@@ -59,11 +62,22 @@ class ShadowFinder {
   };
   using Key = std::pair<std::uint32_t, std::uint32_t>;  // light, blocker
 
+  // False if the pair can have no edges.
+  bool find_pair(const PreparedScene& scene, const EdgeObjects& objects, const ShadowLight& light,
+                 std::uint32_t blocker, Pair& pair) const;
+
   std::map<Key, Pair> pairs_;
-  std::vector<SoftEdge> edges_;
+  Key next_{};  // where the next update begins, so that each comes in turn
+  std::shared_ptr<const std::vector<SoftEdge>> edges_ =
+      std::make_shared<const std::vector<SoftEdge>>();
 };
 
-// Tells the finder which lights are others; true if any is, also of such as cast no shadow edges.
-bool find_changed_lights(const Scene& before, const Scene& after, ShadowFinder& finder);
+// Between two scenes of the same objects.
+struct LightChanges {
+  bool any = false;         // also of such as cast no shadow edges
+  bool renumbered = false;  // they are of another number
+  std::vector<std::uint32_t> moved;
+};
+LightChanges find_changed_lights(const Scene& before, const Scene& after);
 
 }  // namespace arris

@@ -9,12 +9,12 @@
 namespace arris {
 namespace {
 
-struct Plane {
+struct HitPlane {
   Vec3d point, normal;  // unit
 };
 
 // Of the described triangle, not of its rounded copy in the acceleration structure. Nothing if it has no area.
-std::optional<Plane> plane_of(const PreparedScene& scene, const SurfaceHit& hit) {
+std::optional<HitPlane> plane_of(const PreparedScene& scene, const SurfaceHit& hit) {
   const GeometryRecord& record = scene.geometry().embree.records()[hit.geometry];
   const Mesh& mesh = scene.scene().meshes[record.mesh.index];
   const Affine3d& world_from_object = scene.scene().objects[record.object.index].world_from_object;
@@ -26,7 +26,7 @@ std::optional<Plane> plane_of(const PreparedScene& scene, const SurfaceHit& hit)
   const Vec3d normal = cross(vertex(1) - a, vertex(2) - a) * double(record.orientation);
   const double area = length(normal);
   if (!(area > 0)) return std::nullopt;
-  return Plane{a, normal * (1 / area)};
+  return HitPlane{a, normal * (1 / area)};
 }
 
 }  // namespace

@@ -70,12 +70,22 @@ TEST(EdgeCode, edges_side_by_side_are_one) {
       if (i / 8 == j / 8) continue;
       const std::uint32_t one = classify_boundary(1U << i | 1U << j);
       const std::uint32_t doubled = 1U << i | 2U << i | 1U << j;
-      if (i % 8 < 7) EXPECT_EQ(classify_boundary(doubled), one);
-      if (i % 8 < 7 && j % 8 < 7) EXPECT_EQ(classify_boundary(doubled | 2U << j), one);
+      if (i % 8 < 7) {
+        EXPECT_EQ(classify_boundary(doubled), one);
+      }
+      if (i % 8 < 7 && j % 8 < 7) {
+        EXPECT_EQ(classify_boundary(doubled | 2U << j), one);
+      }
       // Sides end at corners; three segments and gaps are two edges.
-      if (i % 8 == 7 && j > i + 2) EXPECT_EQ(classify_boundary(doubled), kComplexEdge);
-      if (i % 8 < 6) EXPECT_EQ(classify_boundary(doubled | 4U << i), kComplexEdge);
-      if (i % 8 < 6) EXPECT_EQ(classify_boundary((doubled ^ 2U << i) | 4U << i), kComplexEdge);
+      if (i % 8 == 7 && j > i + 2) {
+        EXPECT_EQ(classify_boundary(doubled), kComplexEdge);
+      }
+      if (i % 8 < 6) {
+        EXPECT_EQ(classify_boundary(doubled | 4U << i), kComplexEdge);
+      }
+      if (i % 8 < 6) {
+        EXPECT_EQ(classify_boundary((doubled ^ 2U << i) | 4U << i), kComplexEdge);
+      }
     }
   }
 }

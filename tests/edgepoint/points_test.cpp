@@ -371,7 +371,8 @@ TEST(ComplexPixel, mixes_the_colours_around_it) {
     const PrimaryNeighborhood around{{colors.row(y - 1), weights.data()},
                                      {colors.row(y), weights.data()},
                                      {colors.row(y + 1), weights.data()}};
-    const Rgb c = reconstruct_complex_pixel(image, 40, y, {colors, around, nullptr, {0.5F, 0.5F, 0.25F}});
+    const Rgb c =
+        reconstruct_complex_pixel(image, 40, y, {colors, around, nullptr, {0.5F, 0.5F, 0.25F}});
     EXPECT_NEAR(c.x + c.y, 1, 1e-5);
     EXPECT_NEAR(c.z, 0.25F, 1e-6);
     // 0.3 of the left, 0.4 of the right, and the wire between, of which nothing is known.

@@ -207,6 +207,69 @@ TEST(EdgePoint, shading_goes_on_beside_frames) {
   EXPECT_GT(engine.stats().points, 0U);
 }
 
+// Camera, an object and a light move in every frame: what shows is always a state that was set, later ones after
+// earlier ones, and the last one in the end.
+TEST(EdgePoint, everything_moves_in_every_frame) {
+  constexpr int kFrames = 200;
+  const auto scene = prepare_scene(make_scene(24), {.placement = Placement::movable});
+  EdgePointSettings settings;
+  settings.density = 0.3;
+  EdgePointEngine engine(scene, settings);
+  Camera camera = *scene_of(*scene).camera;
+  const double start = scene_of(*scene).objects[1].world_from_object.translation.x;
+  constexpr double kStep = 1.0 / 256;
+  int shown = -1;
+  for (int i = 0; i < kFrames || shown < kFrames - 1; ++i) {
+    if (i < kFrames) {
+      camera.position.x -= kStep;
+      engine.set_camera(camera);
+      engine.move_object(1, translation({start + kStep * (i + 1), 0.2, 0.8}));
+      engine.set_light(0, PointLight{{2.5 - kStep * (i + 1), -3, 5}, Rgb(60)});
+    }
+    const Image& frame = engine.next_frame();
+    const Scene& now = scene_of(*engine.scene());
+    const double moved = now.objects[1].world_from_object.translation.x - start;
+    const int state = int(std::lround(moved / kStep)) - 1;
+    ASSERT_GE(state, shown);
+    ASSERT_LE(state, i);
+    ASSERT_NEAR(std::get<PointLight>(now.lights[0]).position.x, 2.5 - moved, 1e-9);
+    for (const float value : frame.values) ASSERT_TRUE(value >= 0 && value < 1e3F) << value;
+    shown = state;
+    std::this_thread::yield();
+  }
+  EXPECT_GT(engine.stats().points, 0U);
+}
+
+// A change that is being prepared when the scene is replaced never shows; one that is set afterwards does.
+TEST(EdgePoint, a_scene_that_is_set_replaces_changes_that_do_not_show_yet) {
+  const auto scene = prepare_scene(make_scene(24), {.placement = Placement::movable});
+  Scene described = scene_of(*scene);
+  const Affine3d wanted = translation({-0.5, 0.4, 0.8}), later = translation({0.7, -0.8, 0.5});
+  described.objects[1].world_from_object = wanted;
+  const auto other = prepare_moved(*scene, described, {.placement = Placement::movable});
+  for (const bool beside : {true, false}) {
+    EdgePointSettings settings;
+    settings.synchronous = !beside;
+    EdgePointEngine engine(scene, settings);
+    engine.next_frame();
+    engine.move_object(1, translation({9, 9, 9}));
+    if (beside)
+      engine.next_frame();  // it is being prepared from here on, or shows in the frame after
+    engine.move_object(0, translation({0, 0, -9}));
+    engine.set_light(7, PointLight{});  // an error that nobody wants to hear of any more
+    engine.set_scene(other);
+    engine.move_object(2, later);
+    for (;;) {
+      engine.next_frame();
+      const std::vector<Object>& objects = scene_of(*engine.scene()).objects;
+      EXPECT_EQ(objects[0].world_from_object, described.objects[0].world_from_object);
+      EXPECT_EQ(objects[1].world_from_object, wanted);
+      if (objects[2].world_from_object == later) break;
+      std::this_thread::yield();
+    }
+  }
+}
+
 // A floor of black and white texels, each about four pixels wide, beneath the boxes, and a box that is painted too.
 Scene make_checkered_scene(int size_px) {
   Scene scene = make_scene(size_px);
@@ -301,7 +364,9 @@ TEST(EdgePoint, cheap_frames_are_traced) {
     engine.set_camera(camera);
     const Image& frame = engine.next_frame();
     EXPECT_TRUE(engine.stats().traced);
-    if (i == 0) EXPECT_LT(rmse(frame, path_picture(scene, 8)), 1e-6);
+    if (i == 0) {
+      EXPECT_LT(rmse(frame, path_picture(scene, 8)), 1e-6);
+    }
   }
   // Paths add up while the view stands still.
   EXPECT_LT(rmse(engine.next_frame(), path_picture(scene, 16)), 1e-6);
