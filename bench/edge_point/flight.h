@@ -3,8 +3,8 @@
 //            Table 3, memory, and the time that tracing every pixel with the same shader takes. measure_quality():
 //            errors of the same frames with edges, without them, and of a picture of full size that costs as much
 //            shading but is not interpolated.
-// How        Errors are against two independent references of few paths: the mean of (p − a)(p − b) has no part of their
-//            noise in it, where that of (p − a)² has, so that it is the error against a converged picture.
+// How        Errors are against two independent references of few paths: the mean of (p − a)(p − b) has no part of
+//            their noise in it, where that of (p − a)² has, so that it is the error against a converged picture.
 // Source     Bala, Walter, Greenberg (2003), §7
 #pragma once
 

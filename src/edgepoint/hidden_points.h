@@ -4,7 +4,8 @@
 //            be reached from it: with no edge between, they are on one surface, whose inverse depths are linear in the
 //            picture where it is flat. A plane is fitted to those. Or if one of those samples is clearly nearer and of
 //            another object: where one object ends before another there is an edge.
-// Guarantee  points of one object and plane hide none of each other, however steep the view (tests/edgepoint/points_test.cpp)
+// Guarantee  points of one object and plane hide none of each other, however steep the view
+//            (tests/edgepoint/points_test.cpp)
 // Limits     of one object needs four samples around that are not in a line; a point with fewer is kept. Where solids
 //            interpenetrate, which has no edge, points of the farther one may go beside the line.
 // Cost       a look at the depths around for each point; a fit where they differ
