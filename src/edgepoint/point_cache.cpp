@@ -98,7 +98,7 @@ void PointCache::add(std::span<const ShadedPoint> points, std::uint32_t frame) {
   }
 }
 
-void PointCache::move(std::span<const std::optional<Affine3d>> to_from, std::uint32_t frame) {
+void PointCache::move(std::span<const std::optional<Affine3d>> to_from) {
   for (std::size_t b = 0; b < blocks_.size(); ++b) {
     PointBlock& block = blocks_[b];
     const auto first = PointNumber(b * kPointBlock);
@@ -108,11 +108,16 @@ void PointCache::move(std::span<const std::optional<Affine3d>> to_from, std::uin
       x_[i] = p.x;
       y_[i] = p.y;
       z_[i] = p.z;
-      looks_[i].born = std::uint16_t(frame - kStaleAge);
+      make_stale(kMovedStale, looks_[i]);
       block.lower = min(block.lower, p);
       block.upper = max(block.upper, p);
     }
   }
+}
+
+void PointCache::make_stale(Staleness staleness) {
+  const std::size_t last = blocks_.size() * kPointBlock;
+  for (std::size_t i = 0; i < last; ++i) make_stale(staleness, looks_[i]);
 }
 
 void PointCache::set_seen(std::span<const std::uint32_t> seen) {

@@ -9,6 +9,7 @@
 //            (2002); Bala, Walter, Greenberg (2003), §4.3. Theirs is one array in no order.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <cstddef>
@@ -50,7 +51,8 @@ inline Rgb unpack_radiance(std::uint32_t packed) {
 struct PointLook {
   std::uint32_t packed_radiance = 0;
   std::uint16_t born = 0;  // the frame's number, modulo 2^16
-  std::uint16_t unused = 0;
+  // How much it shows what is no longer so: what its pixel wants, 256 times.
+  std::uint16_t stale = 0;
 };
 
 inline constexpr std::uint32_t kPointBlock = 256;
@@ -64,6 +66,14 @@ struct PointBlock {
   Vec3f lower, upper;  // of the positions
 };
 
+// What a change adds to what points' pixels want, 0 to 255, and what it makes of it at most. Changes add up, so that of
+// points that are all wrong those come first that have been so for longer.
+struct Staleness {
+  float add = 0, most = 0;
+};
+// Of what has moved, or is shaded otherwise at once; little less than where nothing is known.
+inline constexpr Staleness kMovedStale{160, 224};
+
 class PointCache {
  public:
   // Of at least so many points; at most kMostPoints.
@@ -71,11 +81,13 @@ class PointCache {
 
   // Takes the points of one frame in, those that replace others into their places.
   void add(std::span<const ShadedPoint> points, std::uint32_t frame);
-  // Moves the points of objects, and makes them old. to_from: by object; those without value stay.
-  void move(std::span<const std::optional<Affine3d>> to_from, std::uint32_t frame);
-  // Makes points old: those for which is_stale(position) holds, of blocks for which may_hold(lower, upper) does.
+  // Moves the points of objects, and makes them kMovedStale. to_from: by object; those without value stay.
+  void move(std::span<const std::optional<Affine3d>> to_from);
+  // Makes points stale: those for which is_stale(position) holds, of blocks for which may_hold(lower, upper) does.
   template <class MayHold, class IsStale>
-  void make_old(std::uint32_t frame, const MayHold& may_hold, const IsStale& is_stale);
+  void make_stale(Staleness staleness, const MayHold& may_hold, const IsStale& is_stale);
+  // All of them.
+  void make_stale(Staleness staleness);
 
   [[nodiscard]] std::span<const PointBlock> blocks() const { return blocks_; }
   // By point number, for all blocks.
@@ -93,6 +105,11 @@ class PointCache {
  private:
   void put(PointBlock& block, PointNumber number, const ShadedPoint& point, std::uint32_t frame);
   std::size_t room_for(bool far, std::uint32_t frame);
+  static void make_stale(Staleness staleness, PointLook& look) {
+    const auto most = std::uint32_t(256 * staleness.most);
+    const std::uint32_t more = look.stale + std::uint32_t(256 * staleness.add);
+    look.stale = std::uint16_t(std::max<std::uint32_t>(look.stale, std::min(more, most)));
+  }
   [[nodiscard]] Vec3f position(PointNumber number) const {
     return {x_[number], y_[number], z_[number]};
   }
@@ -105,17 +122,14 @@ class PointCache {
   std::array<std::size_t, 2> open_{};  // the block being filled: of near points, and of far ones
 };
 
-// Points of this age show what is no longer so, or nearly.
-inline constexpr std::uint16_t kStaleAge = 0x8000;
-
 template <class MayHold, class IsStale>
-void PointCache::make_old(std::uint32_t frame, const MayHold& may_hold, const IsStale& is_stale) {
+void PointCache::make_stale(Staleness staleness, const MayHold& may_hold, const IsStale& is_stale) {
   for (std::size_t b = 0; b < blocks_.size(); ++b) {
     const PointBlock& block = blocks_[b];
     if (block.is_far || block.count == 0 || !may_hold(block.lower, block.upper)) continue;
     const auto first = PointNumber(b * kPointBlock);
     for (PointNumber i = first; i < first + block.count; ++i) {
-      if (is_stale(position(i))) looks_[i].born = std::uint16_t(frame - kStaleAge);
+      if (is_stale(position(i))) make_stale(staleness, looks_[i]);
     }
   }
 }

@@ -18,8 +18,6 @@
 #define ARRIS_EDGEPOINT_POINT_ROWS_ONCE
 namespace arris {
 
-// What a pixel wants whose point shows what is no longer so.
-inline constexpr std::uint32_t kStaleWanted = 160;
 // Frames after which a point gets no older.
 inline constexpr std::uint32_t kOld = 254;
 
@@ -109,9 +107,8 @@ void unpack(std::span<const PointKey> row, const PointLook* looks, std::uint32_t
     hn::StoreU(channel(hn::ShiftRight<18>(packed)), f, colors.b + x);
     const auto age = hn::And(hn::Sub(hn::Set(u, frame), born), hn::Set(u, 0xffff));
     const auto by_age = hn::Add(hn::ShiftRight<4>(hn::Min(age, hn::Set(u, kOld))), hn::Set(u, 1));
-    const auto is_stale = hn::Gt(age, hn::Set(u, kStaleAge - 1U));
-    const auto wish =
-        hn::IfThenElseZero(some, hn::IfThenElse(is_stale, hn::Set(u, kStaleWanted), by_age));
+    // The upper half is PointLook::stale.
+    const auto wish = hn::IfThenElseZero(some, hn::Max(by_age, hn::ShiftRight<24>(born)));
     hn::StoreU(hn::DemoteTo(bytes, hn::BitCast(s, wish)), bytes, wishes + x);
   });
 }

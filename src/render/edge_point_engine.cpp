@@ -259,6 +259,8 @@ class EdgePointEngine::Impl {
     const auto count = std::size_t(std::lround(density * pixel_count()));
     std::copy(maker_.wanted().begin(), maker_.wanted().end(), wanted_.begin());
     if (is_still()) add_still_wishes();
+    want_moved(make_pixel_view(camera, image_), moved_, wanted_);
+    moved_.clear();
     for (const std::uint32_t pixel :
          plan_samples(wanted_, {image_.width_px, image_.height_px, count, frame_})) {
       const PointKey seen = maker_.image().points[pixel];
@@ -363,6 +365,7 @@ class EdgePointEngine::Impl {
   TextureTints tints_;
   StillFilm film_;
   std::vector<std::uint8_t> wanted_;
+  std::vector<Sphere> moved_;  // where objects were and are that have moved since the last plan
   TraceChoice choice_;
   EdgePointStats stats_;
   std::uint32_t frame_ = 0;
@@ -399,25 +402,23 @@ void EdgePointEngine::Impl::show(ShownScene next) {
   std::swap(shown_, next);
   if (next.scene == shown_.scene) return;
   const Scene &before = next.scene->scene(), &after = shown_.scene->scene();
-  std::vector<Sphere> moved;
+  const std::size_t moved_before = moved_.size();
   std::vector<std::optional<Affine3d>> to_from(after.objects.size());
   for (std::uint32_t i = 0; i < after.objects.size(); ++i) {
     const Affine3d &from = before.objects[i].world_from_object,
                    &to = after.objects[i].world_from_object;
     if (from == to) continue;
     to_from[i] = to * inverse(from);
-    moved.push_back(shown_.objects->bounding_sphere(*next.scene, i));
-    moved.push_back(shown_.objects->bounding_sphere(*shown_.scene, i));
+    moved_.push_back(shown_.objects->bounding_sphere(*next.scene, i));
+    moved_.push_back(shown_.objects->bounding_sphere(*shown_.scene, i));
   }
-  if (!moved.empty()) {
-    cache_.move(to_from, frame_);
-    make_shadowed_old(*lights_, moved, frame_, cache_);
+  if (const std::span moved = std::span(moved_).subspan(moved_before); !moved.empty()) {
+    cache_.move(to_from);
+    make_shadowed_stale(*lights_, moved, cache_);
   }
-  if (find_changed_lights(before, after).any ||
-      shown_.objects->is_rounded_anew(*next.scene, *shown_.scene)) {
-    const auto all = [](auto...) { return true; };
-    cache_.make_old(frame_, all, all);
-  }
+  if (shown_.objects->is_rounded_anew(*next.scene, *shown_.scene)) cache_.make_stale(kMovedStale);
+  const LightChanges changes = find_changed_lights(before, after);
+  if (changes.amount > 0) cache_.make_stale(stale_by_light(changes.amount));
   lights_ = std::make_shared<const std::vector<ShadowLight>>(shadow_lights(*shown_.scene));
   updater_.retire(std::move(next.scene));
   view_changed();

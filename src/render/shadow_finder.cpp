@@ -92,44 +92,60 @@ std::vector<ShadowLight> shadow_lights(const PreparedScene& prepared) {
 
 namespace {
 
-// Whether a light shines from elsewhere, and whether it differs at all.
+// Whether a light shines from elsewhere, and how much it differs in all, 0 to 1.
 struct LightChange {
-  bool moved = false, any = false;
+  bool moved = false;
+  double amount = 0;
 };
-LightChange change_of(const PointLight& a, const PointLight& b) {
-  const bool moved = a.position != b.position;
-  return {moved, moved || a.intensity != b.intensity};
+constexpr double kWholeMove = 0.25;  // of the scene's scale, or radians
+
+LightChange change(double move, Rgb a, Rgb b, bool otherwise = false) {
+  const Rgb more{std::max(a.x, b.x), std::max(a.y, b.y), std::max(a.z, b.z)};
+  const Rgb less{std::min(a.x, b.x), std::min(a.y, b.y), std::min(a.z, b.z)};
+  const double most = double(max_component(more));
+  const double part = most > 0 ? double(max_component(more - less)) / most : 0;
+  return {move > 0, otherwise ? 1 : std::min(1.0, std::max(part, move / kWholeMove))};
 }
-LightChange change_of(const SpotLight& a, const SpotLight& b) {
-  const bool moved = a.position != b.position;
-  return {moved, moved || a.intensity != b.intensity || a.direction != b.direction ||
-                     a.inner_angle != b.inner_angle || a.outer_angle != b.outer_angle};
+LightChange change_of(const PointLight& a, const PointLight& b, double scale) {
+  return change(length(a.position - b.position) / scale, a.intensity, b.intensity);
 }
-LightChange change_of(const DirectionalLight& a, const DirectionalLight& b) {
-  const bool moved = a.direction != b.direction;
-  return {moved, moved || a.irradiance != b.irradiance};
+LightChange change_of(const SpotLight& a, const SpotLight& b, double scale) {
+  const bool aimed = a.direction != b.direction || a.inner_angle != b.inner_angle ||
+                     a.outer_angle != b.outer_angle;
+  return change(length(a.position - b.position) / scale, a.intensity, b.intensity, aimed);
 }
-LightChange change_of(const AreaLight& a, const AreaLight& b) {
-  const bool moved = a.corner != b.corner || a.edge_u != b.edge_u || a.edge_v != b.edge_v;
-  return {moved, moved || a.radiance != b.radiance || a.visible_to_camera != b.visible_to_camera};
+LightChange change_of(const DirectionalLight& a, const DirectionalLight& b, double /*scale*/) {
+  return change(length(a.direction - b.direction), a.irradiance, b.irradiance);
+}
+LightChange change_of(const AreaLight& a, const AreaLight& b, double scale) {
+  const double move = std::max(
+      {length(a.corner - b.corner), length(a.edge_u - b.edge_u), length(a.edge_v - b.edge_v)});
+  return change(move / scale, a.radiance, b.radiance, a.visible_to_camera != b.visible_to_camera);
 }
 template <class A, class B>
-LightChange change_of(const A& /*a*/, const B& /*b*/) {
-  return {true, true};
+LightChange change_of(const A& /*a*/, const B& /*b*/, double /*scale*/) {
+  return {true, 1};
+}
+
+// What the camera looks at from how far away tells how large the scene is.
+double scale_of(const Scene& scene) {
+  return scene.camera ? length(scene.camera->position - scene.camera->target) : 1;
 }
 
 }  // namespace
 
 LightChanges find_changed_lights(const Scene& before, const Scene& after) {
   LightChanges changes;
-  changes.any = changes.renumbered = before.lights.size() != after.lights.size();
+  changes.renumbered = before.lights.size() != after.lights.size();
+  changes.amount = changes.renumbered ? 1 : 0;
   if (changes.renumbered) return changes;
+  const double scale = scale_of(after);
   for (std::uint32_t i = 0; i < after.lights.size(); ++i) {
     const LightChange change =
-        std::visit([](const auto& a, const auto& b) { return change_of(a, b); }, before.lights[i],
-                   after.lights[i]);
+        std::visit([&](const auto& a, const auto& b) { return change_of(a, b, scale); },
+                   before.lights[i], after.lights[i]);
     if (change.moved) changes.moved.push_back(i);
-    changes.any = changes.any || change.any;
+    changes.amount = std::max(changes.amount, change.amount);
   }
   return changes;
 }

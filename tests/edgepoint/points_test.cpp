@@ -98,7 +98,7 @@ TEST(PointCache, moves_the_points_of_an_object_only) {
   moved.add(points, 1);
   std::vector<std::optional<Affine3d>> to_from(3);
   to_from[1] = Affine3d{{}, {1, 2, 3}};
-  moved.move(to_from, 5);
+  moved.move(to_from);
   int count = 0;
   for (std::size_t b = 0; b < cache.blocks().size(); ++b) {
     for (std::size_t i = b * kPointBlock; i < b * kPointBlock + cache.blocks()[b].count; ++i) {
@@ -106,7 +106,7 @@ TEST(PointCache, moves_the_points_of_an_object_only) {
       count += is_moved ? 1 : 0;
       if (!is_moved) continue;
       EXPECT_FLOAT_EQ(moved.z()[i], cache.z()[i] + 3);
-      EXPECT_EQ(std::uint16_t(5 - moved.looks()[i].born), kStaleAge);
+      EXPECT_EQ(moved.looks()[i].stale, 256 * kMovedStale.add);
       EXPECT_LE(moved.blocks()[b].lower.x, moved.x()[i]);
       EXPECT_GE(moved.blocks()[b].upper.x, moved.x()[i]);
     }

@@ -61,7 +61,7 @@ TEST(StalePoints, are_those_behind_what_has_moved) {
     }
     PointCache cache(4000);
     cache.add(points, 9);
-    make_shadowed_old(light, {&blocker, 1}, 10, cache);
+    make_shadowed_stale(light, {&blocker, 1}, cache);
     const auto& at = std::get<HomogeneousPoint>(light[0]);
     int stale = 0;
     for (std::size_t i = 0; i < points.size(); ++i) {
@@ -70,13 +70,62 @@ TEST(StalePoints, are_those_behind_what_has_moved) {
       for (int s = 0; s <= 4000; ++s) {
         nearest = std::min(nearest, length(p + way * (s / 4000.0) - blocker.center));
       }
-      const bool is_stale = std::uint16_t(10 - cache.looks()[i].born) == kStaleAge;
+      const bool is_stale = cache.looks()[i].stale > 0;
       stale += is_stale ? 1 : 0;
       if (std::abs(nearest - blocker.radius) < 0.02) continue;
       ASSERT_EQ(is_stale, nearest < blocker.radius) << i << " " << nearest;
     }
     EXPECT_GT(stale, 50);
   }
+}
+
+// Changes of light add up, and leave what has moved more urgent.
+TEST(StalePoints, grow_staler_with_every_change_of_light) {
+  ShadedPoint point;
+  point.object = 0;
+  PointCache cache(100);
+  cache.add({&point, 1}, 1);
+  const auto stale = [&] { return int(cache.looks()[0].stale); };
+  cache.make_stale(stale_by_light(0.02));
+  const int once = stale();
+  cache.make_stale(stale_by_light(0.02));
+  EXPECT_GT(once, 0);
+  EXPECT_EQ(stale(), 2 * once);
+  for (int i = 0; i < 1000; ++i) cache.make_stale(stale_by_light(1));
+  const int most = stale();
+  cache.make_stale(kMovedStale);
+  EXPECT_GT(stale(), most);
+  const int moved = stale();
+  cache.make_stale(stale_by_light(1));
+  EXPECT_EQ(stale(), moved);
+}
+
+// A ball in the middle of a view along z: pixels within its outline want more, others what they wanted.
+TEST(StalePoints, are_looked_for_where_objects_have_moved) {
+  constexpr int kSize = 64;
+  const Mat3d world_from_pixel{{1.0 / kSize, 0, 0}, {0, 1.0 / kSize, 0}, {-0.5, -0.5, 1}};
+  const PixelView view{{0, 0, -10}, inverse(world_from_pixel), kSize, kSize};
+  std::vector<std::uint8_t> wanted(std::size_t(kSize * kSize), 10);
+  const Sphere ball{{0, 0, 0}, 2};  // 12.8 pixels around the middle
+  want_moved(view, {&ball, 1}, wanted);
+  for (int y = 0; y < kSize; ++y) {
+    for (int x = 0; x < kSize; ++x) {
+      const double from_middle = std::hypot(x + 0.5 - kSize / 2.0, y + 0.5 - kSize / 2.0);
+      const int wish = wanted[std::size_t(y * kSize + x)];
+      if (from_middle < 11.5) {
+        EXPECT_GT(wish, 10) << x << " " << y;
+      }
+      if (from_middle > 14.5) {
+        EXPECT_EQ(wish, 10) << x << " " << y;
+      }
+    }
+  }
+  // From within, or behind the eye, nothing is known of the outline.
+  const std::vector<std::uint8_t> before = wanted;
+  const Sphere behind{{0, 0, -20}, 2}, around{{0, 0, -10}, 2};
+  want_moved(view, {&behind, 1}, wanted);
+  want_moved(view, {&around, 1}, wanted);
+  EXPECT_EQ(wanted, before);
 }
 
 }  // namespace
