@@ -62,16 +62,18 @@ struct EdgePointStats {
   struct Edges {
     std::uint64_t silhouette = 0, sharp = 0, shadow = 0;
   } edges;
-  // Every pixel was traced, without edges and points: all but `total`, which has the tracing in it, is 0.
+  // Every pixel was traced, without edges and points: stages but `total`, which has the tracing in it, classes and
+  // edges are 0.
   bool traced = false;
-  std::uint64_t new_points = 0;  // that came since the last frame
+  // Shaded since the last frame: points, and pixels of a view that stands still. `synchronous`: for the next frame.
+  std::uint64_t new_points = 0;
   std::uint64_t points = 0;      // in the cache
   std::uint64_t hidden = 0;      // of them, seen through gaps and left out
   std::uint64_t unresolved = 0;  // pixels that no sample reaches
   // In a view that stands still: paths of its own of the pixel that has the fewest.
   std::uint32_t still_paths = 0;
   RayCounts rays;              // of shading since the last frame
-  double shading_seconds = 0;  // synchronous: of the new points
+  double shading_seconds = 0;  // synchronous: of the new points; of traced frames
   std::uint64_t cache_bytes = 0, image_bytes = 0;
 };
 

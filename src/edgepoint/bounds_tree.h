@@ -2,7 +2,7 @@
 // What       orders records and bounds ranges of them by nodes in depth-first order: node i's children are i + 1 and
 //            the one after that one's subtree, and i + size skips both. A node may hold records of its own.
 // Guarantee  same nodes and order with any number of threads
-// Cost       n log n, two threads from the first split on
+// Cost       n log n, each split of 16,384 records or more on two threads
 // Source     Bala, Walter, Greenberg 2003, section 6.4: top-down, split on one axis where the children are smallest.
 //            Size counts by the records a child has; places to split at lie in 16 equal parts, on the two axes that
 //            spread records most.

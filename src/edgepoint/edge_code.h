@@ -94,13 +94,10 @@ class PixelCode {
 
 enum class RegionOf : std::uint8_t { a, b, ambiguous };
 
-// The four corners, clockwise from the upper left, as bits.
-inline constexpr std::uint32_t kUpperLeft = 1, kUpperRight = 2, kLowerRight = 4, kLowerLeft = 8;
-
 struct EdgeTables {
   // Part of the pixel that is region A.
   std::array<float, kEdgeCodes> area_a{};
-  // Corners in region A.
+  // Corners in region A: bits from the lowest, clockwise from the upper left.
   std::array<std::uint8_t, kEdgeCodes> corners_a{};
   // The region of each of the 16 cells (4 y + x of quarters of a pixel), two bits each, as RegionOf. A cell that the
   // edge may cross, wherever in its two segments it ends, is ambiguous.

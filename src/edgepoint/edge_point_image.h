@@ -2,8 +2,8 @@
 // What       for each pixel which eighths of its boundary are crossed by edges, what that makes of it, and the
 //            nearest point that was projected onto it
 // Cost       a pixel: 2 bytes of code, 8 of depth, point and subpixel position; beside them 2 bytes of crossings, 2
-//            more with the half lines that complex pixels are looked at with, 1 byte of corners and 1.6 of samples
-//            and reachability
+//            more with the half lines that complex pixels are looked at with; and planes of bits, 22 a pixel and
+//            their margins (bit_plane.h): corners, points, samples, reachability
 // Source     Bala, Walter, Greenberg (2003), §4.4, §7.4
 #pragma once
 

@@ -149,9 +149,11 @@ FrameReport FrameMaker::make(const PixelView& view, const FrameEdges& edges, Poi
                [&](std::size_t i) { find_reach(image_.corners, bands_[i], image_.reach); });
   report.times.reachability = watch.lap();
 
+  std::span<const std::uint32_t> objects;
+  if (!settings.edges_are_missing) objects = cache.objects();
   std::vector<std::vector<std::uint32_t>> hidden(bands_.size());
   parallel_for(bands_.size(), parallel, [&](std::size_t i) {
-    hidden[i] = find_hidden_points(image_, cache.objects(), depth_, bands_[i], pixel_size(view));
+    hidden[i] = find_hidden_points(image_, objects, depth_, bands_[i], pixel_size(view));
   });
   for (const std::vector<std::uint32_t>& pixels : hidden) {
     for (const std::uint32_t pixel : pixels) --seen_[image_.points[pixel].point() / kPointBlock];

@@ -43,6 +43,8 @@ struct FrameSettings {
   int threads = 0;  // 0: all
   // Asked once edges and points are known; empty, or null: nothing is tinted.
   std::function<const TintImage*(const EdgePointImage&)> find_tints;
+  // What no edge parts may still be two objects: points are hidden by those of their own object only.
+  bool edges_are_missing = false;
 };
 
 struct FrameEdges {

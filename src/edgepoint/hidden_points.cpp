@@ -19,6 +19,8 @@
 
 #include <hwy/highway.h>
 
+#include "edgepoint/bit_lanes-inl.h"
+
 #ifndef ARRIS_EDGEPOINT_HIDDEN_POINTS_ONCE
 #define ARRIS_EDGEPOINT_HIDDEN_POINTS_ONCE
 namespace arris {
@@ -43,15 +45,6 @@ namespace {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
-template <class Tag>
-std::uint64_t mask_bits(Tag tag, hn::Mask<Tag> mask) {
-  std::array<std::uint8_t, 8> bytes{};
-  hn::StoreMaskBits(tag, mask, bytes.data());
-  std::uint64_t bits = 0;
-  std::memcpy(&bits, bytes.data(), sizeof bits);
-  return bits & ((std::uint64_t{1} << hn::Lanes(tag)) - 1);
-}
-
 // Of 64 pixels those whose inverse depth is below `part` of a neighbour's.
 std::uint64_t find_deeper(const DepthTaps& taps, const float* inverse, float part) {
   const hn::CappedTag<float, 16> f;
@@ -67,7 +60,7 @@ std::uint64_t find_deeper(const DepthTaps& taps, const float* inverse, float par
       most = hn::Max(most, hn::IfThenElseZero(mask, hn::LoadU(f, taps.taps[k].inverse + i)));
     }
     const auto own = hn::LoadU(f, inverse + i);
-    found |= mask_bits(f, hn::Lt(own, hn::Mul(most, hn::Set(f, part)))) << i;
+    found |= bits_of(f, hn::Lt(own, hn::Mul(most, hn::Set(f, part)))) << i;
   }
   return found;
 }
@@ -78,7 +71,7 @@ std::uint64_t find_products_below(const float* a, const float* b, float limit) {
   std::uint64_t found = 0;
   for (std::size_t i = 0; i < 64; i += hn::Lanes(f)) {
     const auto product = hn::Mul(hn::LoadU(f, a + i), hn::LoadU(f, b + i));
-    found |= mask_bits(f, hn::Lt(product, hn::Set(f, limit))) << i;
+    found |= bits_of(f, hn::Lt(product, hn::Set(f, limit))) << i;
   }
   return found;
 }
@@ -213,7 +206,10 @@ class HiddenFinder {
       const DepthTap& tap = taps.taps[std::size_t(std::countr_zero(with_sample))];
       const PointKey other = own[tap.dy * std::ptrdiff_t(image_.width_px) + tap.dx];
       const float there = tap.inverse[bit];
-      if (inverse < there * part && objects_[other.point()] != objects_[own->point()]) return true;
+      if (inverse < there * part && !objects_.empty() &&
+          objects_[other.point()] != objects_[own->point()]) {
+        return true;
+      }
       const auto quarters = [](std::uint32_t a, std::uint32_t b) {
         return 0.25F * (float(a) - float(b));
       };

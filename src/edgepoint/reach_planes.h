@@ -1,6 +1,7 @@
 // reach_planes.h — reachability of the 5 × 5 neighbourhood of every pixel
 // In         the regions at the corners of all pixels
-// Out        for each pixel the twelve offsets of kReachOffset, a plane each: 1.5 bytes a pixel (the paper: 3)
+// Out        for each pixel the twelve offsets of kReachOffset, a plane each: 1.5 bytes a pixel and margins, at most 3
+//            from 512 pixels a row on (the paper: 3)
 // Cost       about 500 operations on vectors of words for each word of a row; rows are independent
 // Source     reach_chain-inl.h
 #pragma once

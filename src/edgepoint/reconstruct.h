@@ -43,8 +43,8 @@ struct BandReport {
   ReconstructionTimes times;
 };
 
-// wanted: of each pixel how much it wants a new sample, 0 to 255: 255 where nothing is known, small where there is a
-// point, and the older that is the more.
+// wanted: of each pixel how much it wants a new sample, 0 to 255: 255 where nothing is known; small where there is a
+// point, but the more the older that is, and much where it is stale (PointCache::make_stale()).
 BandReport reconstruct_band(const EdgePointImage& image, const PointCache& cache,
                             const ReconstructionSettings& settings, RowBand band, Image& picture,
                             std::span<std::uint8_t> wanted);

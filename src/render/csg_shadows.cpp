@@ -29,11 +29,15 @@ bool is_same_face(const Place& a, const Place& b) {
   return a.met && b.met && a.met->leaf == b.met->leaf && a.met->face == b.met->face;
 }
 
+struct SolidEdge {
+  Vec3d a, b, penumbra;
+  ShadowKind kind = ShadowKind::hard;
+};
+
 class EventOnSolid {
  public:
   // In the tree's space.
-  EventOnSolid(const ShadowEvent& event, const CellProbe& probe,
-               std::vector<CsgEdges::Segment>& out)
+  EventOnSolid(const ShadowEvent& event, const CellProbe& probe, std::vector<SolidEdge>& out)
       : event_(event), probe_(probe), out_(out) {}
 
   void trace() {
@@ -72,23 +76,30 @@ class EventOnSolid {
     const double way = (b.s - a.s) * length(event_.origin[1] - event_.origin[0]);
     const double jump = std::abs(b.met->t - a.met->t);
     if (a.s < b.s && jump <= kJump * std::max(way, kStep * probe_.size())) {
-      out_.push_back({a.met->position, b.met->position});
+      out_.push_back({a.met->position, b.met->position, penumbra_between(a, b), event_.kind});
     }
+  }
+  // As far from the blocker, as a part of its distance from the light, as the penumbra is wide, as a part of the light.
+  [[nodiscard]] Vec3d penumbra_between(const Place& a, const Place& b) const {
+    if (event_.kind == ShadowKind::hard) return {};
+    const Vec3d from = event_.origin[0] + (event_.origin[1] - event_.origin[0]) * ((a.s + b.s) / 2);
+    const Vec3d light = event_.light[0].xyz / event_.light[0].w;
+    return -event_.across * ((a.met->t + b.met->t) / (2 * length(from - light)));
   }
 
   const ShadowEvent& event_;
   const CellProbe& probe_;
-  std::vector<CsgEdges::Segment>& out_;
+  std::vector<SolidEdge>& out_;
 };
 
 }  // namespace
 
-std::vector<WorldEdge> find_edges_on_solid(std::span<const ShadowEvent> events,
-                                           const CsgEdges& solid, const Affine3d& world) {
+std::vector<SoftEdge> find_edges_on_solid(std::span<const ShadowEvent> events,
+                                          const CsgEdges& solid, const Affine3d& world) {
   constexpr std::size_t kBlock = 32;
   const Affine3d object_from_world = inverse(world);
   const std::size_t blocks = (events.size() + kBlock - 1) / kBlock;
-  std::vector<std::vector<CsgEdges::Segment>> found(blocks);
+  std::vector<std::vector<SolidEdge>> found(blocks);
   parallel_for(blocks, {}, [&](std::size_t block) {
     const std::size_t first = block * kBlock;
     for (const ShadowEvent& event :
@@ -98,10 +109,12 @@ std::vector<WorldEdge> find_edges_on_solid(std::span<const ShadowEvent> events,
       EventOnSolid(own, solid.probe(), found[block]).trace();
     }
   });
-  std::vector<WorldEdge> edges;
-  for (const std::vector<CsgEdges::Segment>& some : found) {
-    for (const CsgEdges::Segment& s : some) {
-      edges.push_back({Vec3f(transform_point(world, s.a)), Vec3f(transform_point(world, s.b))});
+  std::vector<SoftEdge> edges;
+  for (const std::vector<SolidEdge>& some : found) {
+    for (const SolidEdge& s : some) {
+      edges.push_back({{Vec3f(transform_point(world, s.a)), Vec3f(transform_point(world, s.b))},
+                       Vec3f(transform_vector(world, s.penumbra)),
+                       s.kind == ShadowKind::umbral});
     }
   }
   return edges;

@@ -78,7 +78,8 @@ class EdgePicture {
     shadows.add(triples);
     shadows.update(scene, objects, kMostEvents);
     Image unused(image_.width_px, image_.height_px, 3);
-    maker_.make(view, {edges, shadows.edges()}, cache, {0, false, settings.threads, {}}, unused);
+    maker_.make(view, {edges, shadows.edges()}, cache, {0, false, settings.threads, {}, false},
+                unused);
   }
 
   [[nodiscard]] const EdgePointImage& image() const { return maker_.image(); }
@@ -350,8 +351,8 @@ class Denoiser {
                          own.coarse > 0 ? own.coarse / (own.coarse + own.noise) : 0.0F;
                      const Rgb expected = mean.color * clear;
                      const Rgb more = expected + (own.color - expected) * even;
-                     regions[at].primary += more;
-                     regions[at].secondary += more;
+                     regions[at].primary = max(regions[at].primary + more, Rgb{});
+                     regions[at].secondary = max(regions[at].secondary + more, Rgb{});
                    }
                  });
   }

@@ -16,8 +16,8 @@
 namespace arris {
 namespace {
 
-// Between the normals on the two sides of an edge: below, the eye sees a smooth surface. The paper has 85° for all
-// meshes, whose own turns below that then blur.
+// Between the normals on the two sides of an edge: below, the eye sees a smooth surface. The paper's angle is set
+// for each mesh (§6.2).
 constexpr double kSharpTurn = radians(8);
 
 // What a mesh shows on its own, whatever object it is.

@@ -138,6 +138,12 @@ class EdgePointEngine::Impl {
     } else {
       if (!workers_ && !has_points_) shade_first(rays);
       make_frame(rays);
+      // Nothing to interpolate: from where the eye is no point can be projected.
+      if (!workers_ && stats_.unresolved == film_size()) {
+        stats_ = {};
+        stats_.traced = true;
+        trace_frame(rays);
+      }
     }
     has_points_ = !stats_.traced;
     ++frame_;
@@ -162,6 +168,11 @@ class EdgePointEngine::Impl {
   [[nodiscard]] std::size_t film_size() const { return maker_.image().codes.size(); }
   // The last frame showed the same.
   [[nodiscard]] bool is_still() const { return still_frames_ > 1; }
+  // Whether a pixel is to have paths of its own instead of a point: also one that wants a point much, but whose points
+  // are taken for hidden again and again.
+  [[nodiscard]] bool takes_paths(std::uint8_t wanted) const {
+    return is_still() && (wanted < kUrgent || still_frames_ > kUrgentFrames);
+  }
 
   static ShownScene first_shown(std::shared_ptr<const PreparedScene> scene, int threads) {
     auto objects = std::make_shared<const EdgeObjects>(*scene, threads);
@@ -189,7 +200,8 @@ class EdgePointEngine::Impl {
     if (shadows && !workers_) updater_.find_shadows(shown_);
     totals.shadow = shown_.shadow_edges->size();
     stats_.stages.edges = milliseconds_since(start);
-    FrameSettings frame{frame_, settings_.complex_filter, settings_.threads, {}};
+    FrameSettings frame{
+        frame_, settings_.complex_filter, settings_.threads, {}, !settings_.use_edges};
     if (settings_.sharp_textures) {
       frame.find_tints = [&](const EdgePointImage& image) {
         return tints_.update(*shown_.scene, camera, cache_, image, settings_.threads);
@@ -265,7 +277,7 @@ class EdgePointEngine::Impl {
          plan_samples(wanted_, {image_.width_px, image_.height_px, count, frame_})) {
       const PointKey seen = maker_.image().points[pixel];
       ShadePlan::Item item{pixel, seen.is_none() ? kNoPoint : seen.point(), kNoPoint};
-      if (is_still() && maker_.wanted()[pixel] < kUrgent) item.first_path = film_.paths_of(pixel);
+      if (takes_paths(maker_.wanted()[pixel])) item.first_path = film_.paths_of(pixel);
       plan->items.push_back(item);
     }
     // Where the plan begins changes, as its end may not be reached.
@@ -282,7 +294,7 @@ class EdgePointEngine::Impl {
     std::vector<std::uint8_t> wishes(film_size());
     film_.fill_wanted(wishes, settings_.threads);
     for (std::size_t i = 0; i < wanted_.size(); ++i) {
-      if (wanted_[i] < kUrgent) wanted_[i] = wishes[i];
+      if (takes_paths(wanted_[i])) wanted_[i] = wishes[i];
     }
   }
 
@@ -351,6 +363,8 @@ class EdgePointEngine::Impl {
 
   // Pixels that want a point so much get one, also in a view that stands still.
   static constexpr std::uint8_t kUrgent = 128;
+  // But only for so many frames.
+  static constexpr std::uint32_t kUrgentFrames = 32;
 
   EdgePointSettings settings_;
   ShownScene shown_;

@@ -20,8 +20,7 @@
 
 namespace arris {
 
-// Appends the outline in the world. least_radius(p): the radius in the world below which a rounding at p is too small
-// to be seen as one, and left out.
+// Where roundings are looked at from. Those of less than the least radius are too small to be seen as such.
 struct RoundedView {
   Vec3d eye;
   Vec3d forward;           // unit; depth is measured along it

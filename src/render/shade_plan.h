@@ -35,10 +35,10 @@ struct ShadeResults {
 
 struct ShadePlan {
   struct Item {
-    std::uint32_t pixel = 0;  // by offset
-    // Of a point: the one that is seen there, if any. Of paths: how many the pixel has.
-    PointNumber replaces = kNoPoint;
-    std::uint32_t first_path = kNoPoint;  // kNoPoint: a point is asked for
+    std::uint32_t pixel = 0;          // by offset
+    PointNumber replaces = kNoPoint;  // of a point: the one that is seen there, if any
+    std::uint32_t first_path =
+        kNoPoint;  // of paths: how many the pixel has; kNoPoint: a point is asked for
   };
 
   std::shared_ptr<const PreparedScene> scene;

@@ -193,9 +193,9 @@ bool ShadowFinder::find_pair(const PreparedScene& scene, const EdgeObjects& obje
     const std::optional<EdgeObjects::Parts> r = objects.parts(scene, receiver);
     if (r) receivers.push_back({r->faces, *r->world, receiver == blocker, r->voids});
     if (const CsgEdges* const on = objects.solid(receiver)) {
-      const std::vector<WorldEdge> found =
+      const std::vector<SoftEdge> found =
           find_edges_on_solid(pair.events, *on, scene.scene().objects[receiver].world_from_object);
-      for (const WorldEdge& edge : found) pair.edges.push_back({edge, {}, false});
+      pair.edges.insert(pair.edges.end(), found.begin(), found.end());
     }
   }
   for (const ShadowEdge& edge : find_shadow_edges(pair.events, receivers)) {

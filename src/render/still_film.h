@@ -1,7 +1,7 @@
 // still_film.h — what a view that stands still adds up to
 // What       Each pixel keeps the sum of its own paths, of the path tracer's sample sequence. The picture goes over
-//            from what is interpolated to their mean as their number grows, so that a still view converges to the
-//            path traced picture.
+//            from what is interpolated to their mean as their number grows, so that a still view converges to what
+//            paths of the shader give: for EdgePointShader::gi the path traced picture.
 // Guarantee  the weight of what is interpolated falls with the square of the number of paths
 // Cost       16 bytes a pixel
 #pragma once

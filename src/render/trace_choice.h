@@ -4,7 +4,6 @@
 // Guarantee  by rays: depends on the calls alone, at any number of threads and on any machine
 // Limits     by rays, a ray costs what it would on two cores of 2023 in scenes of middling size; what edges and points
 //            cost themselves is not looked at
-// Source     design: below about 0.3 µs of shading a pixel, edges and points gain little
 #pragma once
 
 #include <cstdint>

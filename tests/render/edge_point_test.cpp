@@ -79,6 +79,25 @@ TEST(EdgePoint, a_still_view_converges_to_the_path_traced_picture) {
   EXPECT_LT(errors[2], 1.5 * of_paths);
 }
 
+// The eye on the floor: points there lie at no distance and are seen nowhere, however often they are asked for.
+TEST(EdgePoint, a_still_view_gives_every_pixel_paths) {
+  for (const bool edges : {true, false}) {
+    Scene described = make_scene(24);
+    described.camera->position = {3, -4, 0};
+    described.camera->target = {0, 0, -1};
+    EdgePointSettings settings = synchronous();
+    settings.density = 1;
+    settings.use_edges = edges;
+    EdgePointEngine engine(prepare_scene(described), settings);
+    int frames = 0;
+    while (engine.stats().still_paths == 0 && frames < 100) {
+      engine.next_frame();
+      ++frames;
+    }
+    EXPECT_LT(frames, 100) << edges;
+  }
+}
+
 TEST(EdgePoint, frames_are_the_same_at_any_number_of_threads) {
   const auto scene = prepare_scene(make_scene(70));
   std::vector<Image> last;
