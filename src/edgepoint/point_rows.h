@@ -26,8 +26,8 @@ struct DepthColumns {
 void add_depths(std::span<const PointKey> row, const DepthColumns& columns);
 
 // Colours of a row's points; black where there are none. wishes: how much a pixel with a point wants a new one: the
-// more the older or staler; 0 without a point. next: the row that will be asked for next, whose points are loaded meanwhile.
-// looks: room for the row's. All have ColorRows::kMargin beyond the row's end.
+// more the older or staler; 0 without a point. next: the row that will be asked for next, whose points are loaded
+// meanwhile. looks: room for the row's. All have ColorRows::kMargin beyond the row's end.
 void fetch_points(std::span<const PointKey> row, std::span<const PointKey> next,
                   const PointCache& cache, std::uint32_t frame, std::span<PointLook> looks,
                   ColorRow colors, std::uint8_t* wishes);
