@@ -50,7 +50,7 @@ step_tsan() {
   cmake --preset tsan
   cmake --build --preset tsan --target test_base test_render
   TSAN_OPTIONS="suppressions=$PWD/scripts/tsan.supp:halt_on_error=1:second_deadlock_stack=1" \
-    ctest --preset tsan --parallel "$jobs" -R "^($threaded)\\." -E time_limit \
+    ctest --preset tsan --parallel "$jobs" -R "^($threaded)\\." -E "time_limit|$many_rays" \
     --no-tests=error
 }
 
