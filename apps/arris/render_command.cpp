@@ -137,7 +137,7 @@ void denoise(const PreparedScene& scene, const RenderRequest& request, JobResult
 // What was done for each pixel; of beams, for all of them.
 std::string format_work(const JobResult& result) {
   if (result.edge_point && result.edge_point->traced) {
-    return "every pixel traced, which is cheaper than edges and points";
+    return "every pixel traced, as edges and points would cost more or show nothing";
   }
   if (result.edge_point && result.part.samples[0].last == 1) {
     return fmt::format("{} new points of {}", result.edge_point->new_points,

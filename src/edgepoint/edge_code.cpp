@@ -4,12 +4,8 @@
 #include <cmath>
 #include <vector>
 
-#include "arris/math.h"
-
 namespace arris {
-namespace {
 
-// The point at a distance of 0..4 along the boundary.
 Vec2d boundary_point(double along) {
   const int side = int(along) & 3;
   const double t = along - std::floor(along);
@@ -24,6 +20,8 @@ Vec2d boundary_point(double along) {
       return {0, 1 - t};
   }
 }
+
+namespace {
 
 double segment_start(std::uint32_t segment) {
   return segment / 8.0;

@@ -14,6 +14,8 @@
 #include <bit>
 #include <cstdint>
 
+#include "arris/math.h"
+
 namespace arris {
 
 inline constexpr std::uint32_t kEmptyEdge = 0;    // both ends in segment 0
@@ -116,5 +118,9 @@ struct EdgeTables {
 
 // Made once, when first asked for.
 const EdgeTables& edge_tables();
+
+// The point of the unit pixel's boundary at a distance of 0..4 clockwise from the upper left corner. Segment i goes
+// from i / 8 to (i + 1) / 8.
+Vec2d boundary_point(double along);
 
 }  // namespace arris

@@ -157,32 +157,18 @@ class RegionPlanes {
 constexpr int kCells = 4;  // along a side of a pixel
 using CellTable = std::array<float, std::size_t(kCells* kCells)>;
 
-// A place on a pixel's boundary, in the middle of a segment (edge_code.h).
-Vec2f segment_place(std::uint32_t segment) {
-  const float t = (float(segment % 8) + 0.5F) / 8;
-  switch (segment / 8) {
-    case 0:
-      return {t, 0};
-    case 1:
-      return {1, t};
-    case 2:
-      return {1 - t, 1};
-    default:
-      return {0, 1 - t};
-  }
-}
-
 // By edge code: how much of each cell is region A.
 const std::vector<CellTable>& cell_tables() {
   static const std::vector<CellTable> kTables = [] {
     constexpr int kFine = 8;  // places along a side of a cell
     std::vector<CellTable> tables(kEdgeCodes);
     for (std::uint32_t code = 0; code < kEdgeCodes; ++code) {
-      const Vec2f p = segment_place(first_end(code)), q = segment_place(last_end(code));
+      const Vec2d p = boundary_point((first_end(code) + 0.5) / 8),
+                  q = boundary_point((last_end(code) + 0.5) / 8);
       for (int i = 0; i < kCells * kFine * kCells * kFine; ++i) {
         const int column = i % (kCells * kFine), line = i / (kCells * kFine);
-        const float x = (float(column) + 0.5F) / (kCells * kFine) - p.x;
-        const float y = (float(line) + 0.5F) / (kCells * kFine) - p.y;
+        const double x = (column + 0.5) / (kCells * kFine) - p.x;
+        const double y = (line + 0.5) / (kCells * kFine) - p.y;
         // Clockwise from the first end to the second lies on the left of the edge.
         if ((q.x - p.x) * y - (q.y - p.y) * x < 0) {
           tables[code][std::size_t(line / kFine * kCells + column / kFine)] +=

@@ -11,7 +11,7 @@
 namespace arris {
 namespace {
 
-Vec2d boundary_point(double along) {
+Vec2d place_on_boundary(double along) {
   const double t = along - std::floor(along);
   switch (int(along) & 3) {
     case 0:
@@ -94,7 +94,7 @@ TEST(EdgeCode, areas_and_corners_are_those_of_the_edge) {
   const EdgeTables& tables = edge_tables();
   for_codes([&](std::uint32_t first, std::uint32_t last) {
     const std::uint32_t code = edge_code(first, last);
-    const Vec2d a = boundary_point((first + 0.5) / 8), b = boundary_point((last + 0.5) / 8);
+    const Vec2d a = place_on_boundary((first + 0.5) / 8), b = place_on_boundary((last + 0.5) / 8);
     constexpr int kSide = 64;
     int inside = 0;
     for (int i = 0; i < kSide * kSide; ++i) {
@@ -103,7 +103,8 @@ TEST(EdgeCode, areas_and_corners_are_those_of_the_edge) {
     EXPECT_NEAR(tables.area_a[code], double(inside) / (kSide * kSide), 0.01)
         << first << " " << last;
     for (std::uint32_t corner = 0; corner < 4; ++corner) {
-      EXPECT_EQ((tables.corners_a[code] >> corner & 1U) != 0, in_a(a, b, boundary_point(corner)));
+      EXPECT_EQ((tables.corners_a[code] >> corner & 1U) != 0,
+                in_a(a, b, place_on_boundary(corner)));
     }
   });
 }
@@ -117,7 +118,7 @@ TEST(EdgeCode, cells_are_on_their_side_of_every_edge_of_the_code) {
   for_codes([&](std::uint32_t first, std::uint32_t last) {
     for (int i = 0; i < 50; ++i) {
       const double from = unit(random), to = unit(random);
-      const Vec2d a = boundary_point((first + from) / 8), b = boundary_point((last + to) / 8);
+      const Vec2d a = place_on_boundary((first + from) / 8), b = place_on_boundary((last + to) / 8);
       const double x = unit(random), y = unit(random);
       const auto cell = std::uint32_t(int(y * 4) * 4 + int(x * 4));
       const RegionOf region = tables.region_of(edge_code(first, last), cell);
