@@ -309,6 +309,41 @@ CsgTree block_and_ring() {
   return tree;
 }
 
+// A lamp of side 1 at height 4 over a box whose top is at height 1, and a floor that is a solid of solids: all edges that
+// the box throws on it along its sides have a penumbra of 1 · 1 / 3 across.
+TEST(csg_shadows, of_area_lights_have_penumbras) {
+  Camera camera;
+  camera.position = {3, -6, 4};
+  Scene scene = make_empty_scene(camera);
+  add_object(scene, make_box_mesh({0.5, 0.5, 0.5}), make_lambert(0.5F), translation({0, 0, 0.5}));
+  CsgTree slab = flat_tree(CsgOperation::unite, {{CsgBox{{-9, -9, -1}, {9, 9, 0}}, {}, {0}}});
+  slab.name = "slab";
+  Object floor;
+  floor.name = "floor";
+  floor.csg = CsgId{0};
+  scene.csg_trees.push_back(std::move(slab));
+  scene.objects.push_back(std::move(floor));
+  AreaLight lamp;
+  lamp.corner = {-0.5, 1.5, 4};
+  lamp.edge_u = {0, 1, 0};
+  lamp.edge_v = {1, 0, 0};
+  scene.lights.emplace_back(lamp);
+  const auto prepared = prepare_scene(std::move(scene));
+  const EdgeObjects objects(*prepared, 0);
+  ShadowFinder finder;
+  const ShadowTriple triple{0, 0, 1};
+  finder.add({&triple, 1});
+  ASSERT_TRUE(finder.update(*prepared, objects, 1'000'000));
+  int along_x = 0;
+  for (const SoftEdge& e : finder.edges()) {
+    const Vec3f a = e.edge.a, b = e.edge.b;
+    if (length(b - a) < 1e-3F || std::abs(a.y - b.y) > 1e-4F || a.y > -0.51F) continue;
+    ++along_x;
+    EXPECT_NEAR(std::abs(e.penumbra.y), 1.0 / 3, 1e-4);
+  }
+  EXPECT_GE(along_x, 2);
+}
+
 TEST(csg_shadows, on_itself_are_found) {
   for (const Light& light : lights()) {
     Scene scene = rounded_scene({}, 0, light);
