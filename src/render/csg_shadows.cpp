@@ -54,7 +54,7 @@ class EventOnSolid {
 
  private:
   [[nodiscard]] Place place(double s) const {
-    const Vec3d p = event_.origin[0] + (event_.origin[1] - event_.origin[0]) * s;
+    const Vec3d p = origin(s);
     const HomogeneousPoint& light = event_.light[0];
     const Vec3d d = normalize(light.w > 0 ? p - light.xyz / light.w : -light.xyz);
     return {s, probe_.first_met({p, d}, kBeside * probe_.reach())};
@@ -79,12 +79,15 @@ class EventOnSolid {
       out_.push_back({a.met->position, b.met->position, penumbra_between(a, b), event_.kind});
     }
   }
-  // As far from the blocker, as a part of its distance from the light, as the penumbra is wide, as a part of the light.
+  // As wide, in parts of the light, as the solid is far from the blocker, in parts of the blocker's distance from it.
   [[nodiscard]] Vec3d penumbra_between(const Place& a, const Place& b) const {
     if (event_.kind == ShadowKind::hard) return {};
-    const Vec3d from = event_.origin[0] + (event_.origin[1] - event_.origin[0]) * ((a.s + b.s) / 2);
     const Vec3d light = event_.light[0].xyz / event_.light[0].w;
-    return -event_.across * ((a.met->t + b.met->t) / (2 * length(from - light)));
+    const auto part = [&](const Place& p) { return p.met->t / length(origin(p.s) - light); };
+    return -event_.across * ((part(a) + part(b)) / 2);
+  }
+  [[nodiscard]] Vec3d origin(double s) const {
+    return event_.origin[0] + (event_.origin[1] - event_.origin[0]) * s;
   }
 
   const ShadowEvent& event_;

@@ -79,23 +79,42 @@ TEST(EdgePoint, a_still_view_converges_to_the_path_traced_picture) {
   EXPECT_LT(errors[2], 1.5 * of_paths);
 }
 
-// The eye on the floor: points there lie at no distance and are seen nowhere, however often they are asked for.
+// Sticks far thinner than a pixel before nothing: points on them are hidden, or make those around them so, as often as
+// they are asked for.
 TEST(EdgePoint, a_still_view_gives_every_pixel_paths) {
-  for (const bool edges : {true, false}) {
-    Scene described = make_scene(24);
-    described.camera->position = {3, -4, 0};
-    described.camera->target = {0, 0, -1};
-    EdgePointSettings settings = synchronous();
-    settings.density = 1;
-    settings.use_edges = edges;
-    EdgePointEngine engine(prepare_scene(described), settings);
-    int frames = 0;
-    while (engine.stats().still_paths == 0 && frames < 100) {
-      engine.next_frame();
-      ++frames;
-    }
-    EXPECT_LT(frames, 100) << edges;
+  Camera camera;
+  camera.position = {3, -4, 2.5};
+  camera.target = {0, 0, 0};
+  camera.fov_deg = 60;
+  Scene described = make_empty_scene(camera);
+  described.image.width_px = described.image.height_px = 48;
+  described.environment = ConstantEnvironment{Rgb(0.3F)};
+  for (int i = 0; i < 10; ++i) {
+    const Vec3d z = normalize(Vec3d{std::cos(2.4 * i), std::sin(2.4 * i), 0.17 * i - 0.8});
+    const Vec3d x = normalize(cross(z, {0, 0, 1}));
+    const Affine3d turned{Mat3d{x, cross(z, x), z}, {0.2 * i - 1, 0.3 * (i % 4) - 0.5, 0.1 * i}};
+    add_object(described, make_box_mesh({0.005, 0.005, 1}), make_lambert(0.5F), turned);
   }
+  EdgePointSettings settings = synchronous();
+  settings.density = 1;
+  EdgePointEngine engine(prepare_scene(described), settings);
+  int frames = 0;
+  while (engine.stats().still_paths == 0 && frames < 200) {
+    engine.next_frame();
+    ++frames;
+  }
+  EXPECT_LT(frames, 200);
+}
+
+// The eye on the floor: where it looks along it no point can be projected.
+TEST(EdgePoint, a_frame_of_which_no_point_is_seen_is_traced) {
+  Scene described = make_scene(16);
+  described.camera->position = {3, -4, 0};
+  described.camera->target = {0, 0, -1};
+  EdgePointEngine engine(prepare_scene(described), synchronous());
+  const Image& frame = engine.next_frame();
+  EXPECT_TRUE(engine.stats().traced || engine.stats().unresolved < 16 * 16);
+  EXPECT_GT(*std::max_element(frame.values.begin(), frame.values.end()), 0.0F);
 }
 
 TEST(EdgePoint, frames_are_the_same_at_any_number_of_threads) {

@@ -309,8 +309,8 @@ CsgTree block_and_ring() {
   return tree;
 }
 
-// A lamp of side 1 at height 4 over a box whose top is at height 1, and a floor that is a solid of solids: all edges that
-// the box throws on it along its sides have a penumbra of 1 · 1 / 3 across.
+// A lamp of side 1 at height 4 over a box whose top is at height 1, and a floor that is a solid of solids: all edges
+// that the box throws on it along its sides have a penumbra of 1 · 1 / 3 across.
 TEST(csg_shadows, of_area_lights_have_penumbras) {
   Camera camera;
   camera.position = {3, -6, 4};
