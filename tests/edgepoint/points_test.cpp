@@ -381,6 +381,27 @@ TEST(ComplexPixel, mixes_the_colours_around_it) {
   }
 }
 
+// The same wire without any point near it: what is interpolated of the pixels beside it is known all the same.
+TEST(ComplexPixel, takes_what_its_neighbours_are_known_to_be) {
+  const std::vector<float> depths(std::size_t(kWidth) * kHeight, 0.0F);
+  const ScreenEdge left{40.2F, -1, 1, 40.2F, kHeight + 1, 1},
+      right{40.7F, -1, 1, 40.7F, kHeight + 1, 1};
+  const EdgePointImage image = image_of_depths(depths, {left, right});
+  ColorRows colors(3, kWidth);
+  const std::vector<float> known(kWidth, 1.0F);
+  for (int y = 0; y < 3; ++y) {
+    const ColorRow row = colors.row(y);
+    for (int x = 0; x < kWidth; ++x) row.r[x] = x < 40 ? 1 : 0.5F;
+  }
+  ASSERT_TRUE(image.codes[image.offset(40, 11)].is_complex());
+  const PrimaryRows rows{colors.row(0), known.data()};
+  const ComplexPixelColors of{colors, {rows, rows, rows}, nullptr, {0, 0, 1}};
+  const Rgb c = reconstruct_complex_pixel(image, 40, 11, of);
+  // 0.2 of the left, 0.3 of the right; of the wire between nothing is known.
+  EXPECT_NEAR(c.x, 0.2F + 0.3F * 0.5F, 0.07F);
+  EXPECT_NEAR(c.z, 0.5F, 0.07F);
+}
+
 // A line across the picture, points far from it on the left alone: holes on the left take its colours and no others.
 TEST(HoleFiller, colours_cross_no_edge) {
   std::vector<float> depths(std::size_t(kWidth) * kHeight, 1.0F);
