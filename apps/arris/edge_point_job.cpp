@@ -16,16 +16,30 @@ double seconds_since(Clock::time_point start) {
 }  // namespace
 
 void EdgePointJob::set_scene(std::shared_ptr<const PreparedScene> scene, const RenderJob& job) {
+  start_ = Clock::now();
+  time_limit_seconds_ = job.options.time_limit_seconds;
+  stop_ = job.options.stop;
   const Camera camera = *scene_of(*scene).camera;
   if (!engine_) {
     settings_.synchronous = true;
     settings_.seed = job.options.seed;
     settings_.threads = job.options.threads;
+    settings_.must_end = [this](bool has_picture) {
+      return is_stopped() || (has_picture && is_late());
+    };
     engine_ = std::make_unique<EdgePointEngine>(std::move(scene), settings_);
   } else {
     engine_->set_scene(std::move(scene));
   }
   engine_->set_camera(camera);
+}
+
+bool EdgePointJob::is_stopped() const {
+  return stop_ != nullptr && stop_->load();
+}
+
+bool EdgePointJob::is_late() const {
+  return time_limit_seconds_ > 0 && seconds_since(start_) >= time_limit_seconds_;
 }
 
 void EdgePointJob::make_frame(JobResult& result) {
@@ -49,19 +63,17 @@ void EdgePointJob::finish(const RenderJob& job, JobResult& result) const {
 
 JobResult EdgePointJob::render_frame(std::shared_ptr<const PreparedScene> scene,
                                      const RenderJob& job) {
-  const Clock::time_point start = Clock::now();
   JobResult result;
   set_scene(std::move(scene), job);
   make_frame(result);
   finish(job, result);
   result.complete = true;
-  result.seconds = seconds_since(start);
+  result.seconds = seconds_since(start_);
   return result;
 }
 
 JobResult EdgePointJob::render_still(std::shared_ptr<const PreparedScene> scene,
                                      const RenderJob& job) {
-  const Clock::time_point start = Clock::now();
   const RenderOptions& options = job.options;
   JobResult result;
   set_scene(std::move(scene), job);
@@ -69,18 +81,17 @@ JobResult EdgePointJob::render_still(std::shared_ptr<const PreparedScene> scene,
     make_frame(result);
     const std::uint32_t paths = engine_->stats().still_paths;
     result.complete = paths >= options.samples.last;
-    const bool late =
-        options.time_limit_seconds > 0 && seconds_since(start) >= options.time_limit_seconds;
+    const double seconds = seconds_since(start_);
     if (options.on_progress) {
       const double of_paths = double(paths) / double(options.samples.last);
       const double of_time =
-          options.time_limit_seconds > 0 ? seconds_since(start) / options.time_limit_seconds : 0;
-      options.on_progress({std::min(1.0, std::max(of_paths, of_time)), seconds_since(start)});
+          options.time_limit_seconds > 0 ? seconds / options.time_limit_seconds : 0;
+      options.on_progress({std::min(1.0, std::max(of_paths, of_time)), seconds});
     }
-    if (result.complete || late || (options.stop != nullptr && options.stop->load())) break;
+    if (result.complete || is_late() || is_stopped()) break;
   }
   finish(job, result);
-  result.seconds = seconds_since(start);
+  result.seconds = seconds_since(start_);
   return result;
 }
 

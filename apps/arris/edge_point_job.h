@@ -3,6 +3,8 @@
 // Guarantee  same frames at any number of threads: shading is done between them
 #pragma once
 
+#include <atomic>
+#include <chrono>
 #include <memory>
 #include <vector>
 
@@ -18,6 +20,7 @@ class EdgePointJob {
   // The next frame: the scene is the one of the frame before, or what prepare_moved() made of it.
   JobResult render_frame(std::shared_ptr<const PreparedScene> scene, const RenderJob& job);
   // Until each pixel has had as many paths as the job asks for samples, or it is stopped.
+  // Both throw Error{failed} if they are stopped before there is a picture.
   JobResult render_still(std::shared_ptr<const PreparedScene> scene, const RenderJob& job);
 
   // Of all frames.
@@ -27,8 +30,14 @@ class EdgePointJob {
   void set_scene(std::shared_ptr<const PreparedScene> scene, const RenderJob& job);
   void make_frame(JobResult& result);
   void finish(const RenderJob& job, JobResult& result) const;
+  [[nodiscard]] bool is_stopped() const;
+  [[nodiscard]] bool is_late() const;
 
   EdgePointSettings settings_;
+  // Of the picture that is being made.
+  std::chrono::steady_clock::time_point start_;
+  double time_limit_seconds_ = 0;
+  const std::atomic<bool>* stop_ = nullptr;
   std::unique_ptr<EdgePointEngine> engine_;
   const Image* picture_ = nullptr;
   std::vector<EdgePointStats> frames_;

@@ -221,9 +221,14 @@ class PictureMaker {
     write_stats_if_asked();
     report_result(console_, request_.output, result, scene_of(*prepared), more_work());
     if (!stop_ || result.complete) return;
-    throw Error(Error::Kind::failed, "",
-                fmt::format("stopped; the picture holds samples {} of {}..{}",
-                            format_samples(result.part.samples), wanted_.first, wanted_.last));
+    const bool points_only = result.edge_point && result.edge_point->still_paths == 0;
+    throw Error(
+        Error::Kind::failed, "",
+        points_only
+            ? "stopped; the picture is interpolated from points, before each pixel had "
+              "samples of its own"
+            : fmt::format("stopped; the picture holds samples {} of {}..{}",
+                          format_samples(result.part.samples), wanted_.first, wanted_.last));
   }
 
   // Frame 0 is prepared first, whichever are rendered: what depends on the view, such as automatic radii, is its.

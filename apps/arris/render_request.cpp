@@ -106,6 +106,10 @@ EdgePointSettings parse_edge_point_settings(const Arguments& arguments, Integrat
   if (const auto given = find_given(arguments, "--density")) {
     settings.density = parse_real(*given, {1e-4, 1});
   }
+  // Frames are as dense from the first on; a single picture is soon there.
+  if (arguments.has("--frames")) {
+    settings.first_density = std::max(settings.first_density, settings.density);
+  }
   if (const auto given = find_given(arguments, "--edges")) {
     settings.use_edges = parse_choice(*given, {"off", "on"}) == 1;
   }

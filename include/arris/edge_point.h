@@ -12,6 +12,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <memory>
 
 #include "arris/image.h"
@@ -41,12 +42,16 @@ struct EdgePointSettings {
   // Points keep light, and pixels multiply it by their own textures; false: points keep colours, as in the paper.
   bool sharp_textures = true;
   bool synchronous = false;    // shading is done within next_frame()
-  double first_density = 0.2;  // synchronous: of points before the first frame
+  double first_density = 0.2;  // synchronous: of points before the first frame; 0: as `density`
   // A frame is made by tracing a point's paths through every pixel where that takes less: milliseconds, or, unless
   // `synchronous`, less than edges and points take themselves. If `synchronous`, by a ray's fixed cost. 0: never.
   double trace_below_ms = 0;
   std::uint32_t seed = 0;
   int threads = 0;  // 0: all
+  // `synchronous`: asked while points are shaded, by any of the threads, whether the rest of them is left out.
+  // has_picture: the frame has one already, and it is about the next one; else next_frame() throws Error{failed} for
+  // yes. Empty: never.
+  std::function<bool(bool has_picture)> must_end;
 };
 
 struct EdgePointStats {

@@ -16,6 +16,7 @@
 #include "edgepoint/reach_filter.h"
 #include "render/camera.h"
 #include "render/edge_objects.h"
+#include "render/film.h"
 #include "render/pixel_filter.h"
 #include "render/shadow_finder.h"
 #include "render/shadow_probe.h"
@@ -396,9 +397,15 @@ class Denoiser {
 
 }  // namespace
 
+// As bright as the squares are, where white is about 1: what is next to nothing is so beside that.
 Image denoise_within_edges(const PreparedScene& scene, const Image& noisy, const Image& squares,
                            const DenoiseSettings& settings) {
-  return Denoiser(scene, noisy, squares, settings).run();
+  const float scale = exposure_scale(scene.scene().image);
+  Image scaled = noisy;
+  for (float& value : scaled.values) value *= scale;
+  Image out = Denoiser(scene, scaled, squares, settings).run();
+  for (float& value : out.values) value /= scale;
+  return out;
 }
 
 }  // namespace arris

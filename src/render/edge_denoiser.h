@@ -25,7 +25,7 @@ struct DenoiseSettings {
   int threads = 0;
 };
 
-// squares: the means of the squares of the samples' radiances.
+// squares: the means of the film's layer of that name.
 Image denoise_within_edges(const PreparedScene& scene, const Image& noisy, const Image& squares,
                            const DenoiseSettings& settings);
 

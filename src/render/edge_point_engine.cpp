@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <atomic>
 #include <chrono>
 #include <cmath>
 #include <memory>
@@ -153,7 +154,7 @@ class EdgePointEngine::Impl {
       workers_->set_plan(make_plan(rays, planned_density()));
       workers_->set_paused(false);
     } else {
-      shade_now(*make_plan(rays, settings_.density));
+      shade_now(*make_plan(rays, settings_.density), true);
     }
     return picture_;
   }
@@ -217,8 +218,18 @@ class EdgePointEngine::Impl {
   // Before a frame for which no points are known.
   void shade_first(const CameraRays& camera) {
     maker_.forget();
-    shade_now(*make_plan(camera, std::max(settings_.first_density, settings_.density)));
+    shade_now(*make_plan(camera, first_density()), false);
     has_points_ = true;
+  }
+
+  [[nodiscard]] double first_density() const {
+    return settings_.first_density > 0 ? settings_.first_density : settings_.density;
+  }
+  [[nodiscard]] bool must_end(bool has_picture) const {
+    return !workers_ && settings_.must_end && settings_.must_end(has_picture);
+  }
+  static void throw_stopped() {
+    throw Error(Error::Kind::failed, "", "stopped before the first sample");
   }
 
   // Paths of the path tracer's sequence, which add up while the view stands still.
@@ -228,14 +239,22 @@ class EdgePointEngine::Impl {
     const auto paths = std::uint32_t(shader_.paths);
     std::vector<PathRays> rays(std::size_t(image_.height_px));
     std::vector<Rgb> sums(film_size());
+    const bool has_picture = film_.least_paths() > 0;
+    std::atomic<bool> ended = false;
     parallel_for(rays.size(), {.grain = 1, .threads = settings_.threads}, [&](std::size_t y) {
+      if (!ended && must_end(has_picture)) ended = true;
+      if (ended) return;
       for (int x = 0; x < image_.width_px; ++x) {
         const std::size_t at = maker_.image().offset(x, int(y));
         sums[at] = shade_pixel(*shown_.scene, camera, filter, shader_,
                                {x, int(y), film_.paths_of(at), paths}, rays[y]);
       }
     });
-    for (std::size_t i = 0; i < sums.size(); ++i) film_.add(i, sums[i], paths);
+    if (ended && !has_picture) throw_stopped();
+    // All pixels or none, so that the picture is as noisy everywhere.
+    if (!ended) {
+      for (std::size_t i = 0; i < sums.size(); ++i) film_.add(i, sums[i], paths);
+    }
     film_.blend_into(picture_, 0, settings_.threads);
     for (const PathRays& row : rays) {
       stats_.rays.total += row.total;
@@ -298,14 +317,18 @@ class EdgePointEngine::Impl {
     }
   }
 
-  void shade_now(const ShadePlan& plan) {
+  void shade_now(const ShadePlan& plan, bool has_picture) {
     const Clock::time_point start = Clock::now();
     std::vector<ShadeResults> parts((plan.items.size() + ShadePlan::kStep - 1) / ShadePlan::kStep);
+    std::atomic<bool> ended = false;
     parallel_for(parts.size(), {.grain = 1, .threads = settings_.threads}, [&](std::size_t part) {
+      if (!ended && must_end(has_picture)) ended = true;
+      if (ended) return;
       const std::size_t first = part * ShadePlan::kStep;
       const std::size_t last = std::min(plan.items.size(), first + ShadePlan::kStep);
       for (std::size_t i = first; i < last; ++i) shade_item(plan, plan.items[i], parts[part]);
     });
+    if (ended && !has_picture) throw_stopped();
     ShadingCost cost;
     for (const ShadeResults& part : parts) {
       take(plan, part);

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "arris/error.h"
 
@@ -25,11 +26,16 @@ std::vector<std::string> film_layer_names() {
   return {"albedo", "normal", "depth", "object", "rounded", "bevel_fac"};
 }
 
-Film::Film(int width_px, int height_px, const std::vector<std::string>& layers) {
+float exposure_scale(const ImageSettings& image) {
+  return std::exp2(float(image.exposure));
+}
+
+Film::Film(const ImageSettings& image, const std::vector<std::string>& layers)
+    : scale_(exposure_scale(image)) {
   const std::vector<std::string> known = film_layer_names();
-  const std::size_t pixels = std::size_t(width_px) * std::size_t(height_px);
-  sum_.width_px = width_px;
-  sum_.height_px = height_px;
+  const std::size_t pixels = std::size_t(image.width_px) * std::size_t(image.height_px);
+  sum_.width_px = image.width_px;
+  sum_.height_px = image.height_px;
   sum_.images.push_back(make_image_sum("", 3, pixels));
   for (const std::string& name : layers) {
     if (name != kSquaresLayer && std::find(known.begin(), known.end(), name) == known.end()) {
@@ -54,7 +60,10 @@ Film::Film(int width_px, int height_px, const std::vector<std::string>& layers) 
 
 void Film::add(std::size_t pixel, Rgb radiance, const FirstHit& first) {
   add_to(sum_.images.front(), pixel, radiance);
-  if (squares_) add_to(sum_.images[*squares_], pixel, radiance * radiance);
+  if (squares_) {
+    const Rgb scaled = radiance * scale_;
+    add_to(sum_.images[*squares_], pixel, scaled * scaled);
+  }
   if (sum_.images.size() > 1) add_layers(pixel, first);
 }
 

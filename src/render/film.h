@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "arris/math.h"
+#include "arris/scene.h"
 #include "image/picture_sum.h"
 
 namespace arris {
@@ -31,13 +32,16 @@ struct FirstHit {
 // The AOVs a film can hold: their names, in the order of Film's layers.
 std::vector<std::string> film_layer_names();
 
-// A layer besides: the squares of the samples' radiances, from which their variance follows.
+// A layer besides: the squares of the samples' radiances times exposure_scale(), from which their variance follows.
+// Exact sums hold no more than 2^32: what is far brighter than the picture's white is to have room in them.
 inline constexpr const char* kSquaresLayer = "squares";
+// What the picture's exposure multiplies radiances by.
+float exposure_scale(const ImageSettings& image);
 
 class Film {
  public:
   // Throws Error for a layer name it does not know.
-  Film(int width_px, int height_px, const std::vector<std::string>& layers);
+  Film(const ImageSettings& image, const std::vector<std::string>& layers);
 
   // Call for a pixel's samples in order: "object" is what the first one saw.
   void add(std::size_t pixel, Rgb radiance, const FirstHit& first);
@@ -51,6 +55,7 @@ class Film {
 
   using Layer = std::optional<std::size_t>;  // index of sum_.images, if asked for
 
+  float scale_;     // of squares' radiances
   PictureSum sum_;  // the colour first
   Layer albedo_, normal_, depth_, object_, rounded_, bevel_fac_, squares_;
   std::vector<std::uint8_t> object_known_;

@@ -119,7 +119,7 @@ class PathRenderer final : public Renderer {
                   PathSettings{.max_depth = image.max_depth, .strategies = strategies_},
                   options.seed};
     const std::vector<Tile> tiles = make_tiles(image);
-    Film film(image.width_px, image.height_px, options.aovs);
+    Film film(image, options.aovs);
     SamplePasses passes(options);
     RenderResult result;
     for (SampleRange pass = passes.next(); pass.first < pass.last; pass = passes.next()) {

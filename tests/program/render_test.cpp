@@ -333,6 +333,14 @@ TEST(Interrupted, keeps_the_samples_made_so_far) {
   }
 }
 
+TEST(Interrupted, edge_point_keeps_the_picture_it_has) {
+  const Workplace place;
+  const Outcome run = place.shell(signalled("TERM", "--quiet --integrator edge-point -o a.pfm"));
+  EXPECT_EQ(run.code, 1);
+  EXPECT_THAT(run.err, HasSubstr("arris: stopped; the picture "));
+  EXPECT_EQ(load_picture(place / "a.pfm").color.width_px, 40);
+}
+
 TEST(Interrupted, a_part_and_its_rest_make_the_whole) {
   const Workplace place;
   const Outcome run = place.shell(signalled("TERM", "--quiet --checkpoint c.exr -o a.exr"));
@@ -345,15 +353,16 @@ TEST(Interrupted, a_part_and_its_rest_make_the_whole) {
 
 TEST(Interrupted, before_the_first_sample_leaves_the_old_file) {
   const Workplace place;
-  for (const char* name : {"a.pfm", "a.png", "a.exr", "a.jpg"}) {
-    test::write_text(place / name, "old");
+  for (const char* name : {"a.pfm", "a.png", "a.exr", "a.jpg --integrator edge-point"}) {
+    const std::string file = std::string(name).substr(0, 5);
+    test::write_text(place / file, "old");
     const Outcome run =
         place.shell(std::string("'" ARRIS_BINARY_DIR "/arris' render cube.stl --quiet --spp 4 "
                                 "--size 4000x3000 --stats s.json -o ") +
                     name + " & pid=$!; sleep 0.7; kill -TERM $pid; wait $pid");
     EXPECT_EQ(run.code, 1) << name;
     EXPECT_EQ(run.err, "arris: stopped before the first sample\n");
-    EXPECT_EQ(place.read(name), "old");
+    EXPECT_EQ(place.read(file), "old");
     EXPECT_FALSE(std::filesystem::exists(place / "s.json"));
   }
 }

@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <variant>
 
 #include "arris/render.h"
 #include "render/film.h"
@@ -94,6 +95,23 @@ TEST(EdgeDenoiser, is_the_same_at_any_number_of_threads) {
   Scene scene = make_lit_scene();
   scene.image.width_px = 70;
   EXPECT_EQ(render_denoised(scene, 4, 1).values, render_denoised(scene, 4, 2).values);
+}
+
+// Lit 2^k times as brightly and exposed by as much less, the picture is the same.
+TEST(EdgeDenoiser, does_as_well_however_bright_the_scene_is) {
+  Scene scene = make_lit_scene();
+  scene.image.width_px = scene.image.height_px = 40;
+  const Image plain = render_denoised(scene, 8);
+  for (const int stops : {-26, 20}) {
+    Scene other = scene;
+    const auto factor = float(std::exp2(stops));
+    other.image.exposure = -stops;
+    other.environment = ConstantEnvironment{Rgb(0.3F * factor)};
+    std::get<AreaLight>(other.lights[0]).radiance *= factor;
+    Image picture = render_denoised(other, 8);
+    for (float& value : picture.values) value /= factor;
+    EXPECT_LT(rmse(picture, plain), 1e-3) << stops;
+  }
 }
 
 // A black box and floor under a white sky: all that there is are outlines.

@@ -106,6 +106,34 @@ TEST(EdgePoint, a_still_view_gives_every_pixel_paths) {
   EXPECT_LT(frames, 200);
 }
 
+TEST(EdgePoint, ends_within_a_frame_when_asked_to) {
+  const auto scene = prepare_scene(make_scene(64));
+  for (const double trace_below_ms : {0.0, 1e6}) {
+    std::atomic<int> asked = 0;
+    bool ends_before_picture = true;
+    EdgePointSettings settings = synchronous();
+    settings.density = 1;
+    settings.trace_below_ms = trace_below_ms;
+    settings.threads = 1;
+    settings.must_end = [&](bool has_picture) {
+      ++asked;
+      return has_picture || ends_before_picture;
+    };
+    EdgePointEngine engine(scene, settings);
+    EXPECT_THROW(engine.next_frame(), Error);
+    EXPECT_EQ(asked, 1);  // and no more is shaded
+    ends_before_picture = false;
+    engine.next_frame();
+    asked = 0;
+    const Image before = engine.next_frame();
+    const std::uint64_t paths = engine.stats().still_paths;
+    EXPECT_EQ(asked, 1);
+    EXPECT_EQ(engine.stats().new_points, 0U);
+    EXPECT_EQ(engine.next_frame().values, before.values);
+    EXPECT_EQ(engine.stats().still_paths, paths);
+  }
+}
+
 // The eye on the floor: where it looks along it no point can be projected.
 TEST(EdgePoint, a_frame_of_which_no_point_is_seen_is_traced) {
   Scene described = make_scene(16);
