@@ -73,17 +73,19 @@ EdgeFinderRow measure(const std::string& name, const Mesh& mesh) {
       row.silhouettes += is_silhouette(edges, e, from) ? 1 : 0;
     }
   });
-  const ShadowReceiver self{&faces, {}, true};
+  const ShadowReceiver self{0, &faces, {}, true};
   row.shadow_ms = best_ms(5, [&] {
-    const std::vector<ShadowEvent> events = find_shadow_events(tree, from);
-    row.shadow_events = events.size();
-    row.shadow_edges = find_shadow_edges(events, std::span(&self, 1)).size();
+    TracedEvents traced(find_shadow_events(tree, from));
+    traced.add(std::span(&self, 1), std::span(&self, 1));
+    row.shadow_events = traced.events().size();
+    row.shadow_edges = traced.edges().size();
   });
   const ParallelogramLight light{{3, 2, 2}, {0.3, -0.3, 0}, {0, 0.2, -0.3}, {-3, -2, -2}};
   row.area_ms = best_ms(3, [&] {
-    const std::vector<ShadowEvent> events = find_shadow_events(tree, light);
-    row.area_events = events.size();
-    row.area_edges = find_shadow_edges(events, std::span(&self, 1)).size();
+    TracedEvents traced(find_shadow_events(tree, light));
+    traced.add(std::span(&self, 1), std::span(&self, 1));
+    row.area_events = traced.events().size();
+    row.area_edges = traced.edges().size();
   });
   return row;
 }

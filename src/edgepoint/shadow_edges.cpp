@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "base/parallel_for.h"
+#include "edgepoint/shadow_wedge.h"
 
 namespace arris {
 namespace {
@@ -21,10 +22,11 @@ struct Parts {
 };
 
 Parts split_at(const EventPiece& p, double limit) {
-  if (p.k0 > limit && p.k1 > limit) return {Stretch{p.s0, p.s1}, std::nullopt};
-  if (p.k0 <= limit && p.k1 <= limit) return {std::nullopt, Stretch{p.s0, p.s1}};
-  const double s = p.s0 + (p.s1 - p.s0) * ((limit - p.k0) / (p.k1 - p.k0));
-  if (p.k0 > limit) return {Stretch{p.s0, s}, Stretch{s, p.s1}};
+  const double k0 = p.nearness(p.s0), k1 = p.nearness(p.s1);
+  if (k0 > limit && k1 > limit) return {Stretch{p.s0, p.s1}, std::nullopt};
+  if (k0 <= limit && k1 <= limit) return {std::nullopt, Stretch{p.s0, p.s1}};
+  const double s = p.s0 + (p.s1 - p.s0) * ((limit - k0) / (k1 - k0));
+  if (k0 > limit) return {Stretch{p.s0, s}, Stretch{s, p.s1}};
   return {Stretch{s, p.s1}, Stretch{p.s0, s}};
 }
 
@@ -55,54 +57,80 @@ Vec3d penumbra_at(const ShadowEvent& event, double s, Vec3d place, const ShadowR
 // One event after another, with the memory of the one before.
 class EventTracer {
  public:
-  EventTracer(std::span<const ShadowReceiver> receivers, std::vector<ShadowEdge>& out)
-      : receivers_(receivers), out_(out) {}
+  // Both sorted by their numbers; `added` are among `receivers`.
+  EventTracer(std::span<const ShadowReceiver> receivers, std::span<const ShadowReceiver> added)
+      : receivers_(receivers), added_(added) {}
 
-  void trace(const ShadowEvent& event) {
+  // What is known of one event.
+  struct Known {
+    std::span<const EventPiece> toward_light, met;
+    std::span<const EventSegment> taken;
+    std::span<const ShadowEdge> edges;
+  };
+
+  // Its edges with those on the added receivers: what is known of it then.
+  Known trace(const ShadowEvent& event, const Known& known) {
     const std::optional<EventWedge> wedge = make_wedge(event);
-    if (!wedge) return;
+    if (!wedge) return known;
+    bool changed = false;
     hidden_.clear();
-    if (event.is_at_vertex() && !find_hidden(event)) return;
-    find_nearest(*wedge, event);
-    for (const EventPiece& p : pieces_.pieces()) {
+    if (event.is_at_vertex()) {
+      const std::optional<EventWedge> to_light = make_wedge_to_light(event);
+      if (!to_light) return known;
+      toward_light_.assign(known.toward_light);
+      // What is hidden stays so, and needs no more.
+      if (is_all_hidden(*to_light)) return known;
+      ignored_.clear();
+      changed = insert_added(*to_light, event, toward_light_, ignored_);
+      if (is_all_hidden(*to_light)) return {toward_light_.pieces(), {}, {}, {}};
+    }
+    met_.assign(known.met);
+    taken_.assign(known.taken.begin(), known.taken.end());
+    changed |= insert_added(*wedge, event, met_, taken_);
+    if (!changed) return known;
+    std::ranges::sort(taken_);
+    edges_.clear();
+    for (const EventPiece& p : met_.pieces()) {
       if (const auto shown = split_at(p, wedge->begin + wedge->contact).below) {
-        add_shown(*wedge, event, p, *shown);
+        add_shown(*wedge, event, p.of, *shown);
       }
     }
-    for (const EventPiece& p : walk_.taken()) {
-      if (const auto shown = split_at(p, wedge->begin + wedge->contact).below) {
-        add_unless_behind(*wedge, event, p, *shown);
+    for (const EventSegment& t : taken_) {
+      if (const auto shown = split_at({t.s0, t.s1, t}, wedge->begin + wedge->contact).below) {
+        add_unless_behind(*wedge, event, t, *shown);
       }
     }
+    return {toward_light_of(event), met_.pieces(), taken_, edges_};
   }
 
  private:
-  void find_nearest(const EventWedge& wedge, const ShadowEvent& event) {
-    pieces_.clear();
-    walk_.taken().clear();
-    for (std::uint32_t i = 0; i < receivers_.size(); ++i) {
-      walk_.insert(wedge, event, receivers_[i], i, pieces_);
-    }
+  bool insert_added(const EventWedge& wedge, const ShadowEvent& event, NearestPieces& pieces,
+                    std::vector<EventSegment>& taken) {
+    bool changed = false;
+    for (const ShadowReceiver& r : added_) changed |= walk_.insert(wedge, event, r, pieces, taken);
+    return changed;
   }
-  // Where something lies between the light's edge and the vertex; whether anything is left.
-  bool find_hidden(const ShadowEvent& event) {
-    const std::optional<EventWedge> wedge = make_wedge_to_light(event);
-    if (!wedge) return false;
-    find_nearest(*wedge, event);
+  [[nodiscard]] std::span<const EventPiece> toward_light_of(const ShadowEvent& event) const {
+    if (!event.is_at_vertex()) return {};
+    return toward_light_.pieces();
+  }
+  // Finds where something lies between the light's edge and the vertex.
+  bool is_all_hidden(const EventWedge& to_light) {
+    hidden_.clear();
     double covered = 0;
-    for (const EventPiece& p : pieces_.pieces()) {
-      const auto hidden = split_at(p, wedge->begin + wedge->contact).above;
+    for (const EventPiece& p : toward_light_.pieces()) {
+      const auto hidden = split_at(p, to_light.begin + to_light.contact).above;
       if (!hidden) continue;
       hidden_.push_back(*hidden);
       covered += hidden->s1 - hidden->s0;
     }
-    return covered < 1 - kShortestPiece;
+    return covered >= 1 - kShortestPiece;
   }
-  // Adds the stretch of a piece where a receiver is rounded away, but for what lies behind the nearest pieces. Where
+  // Adds the stretch of a segment where a receiver is rounded away, but for what lies behind the nearest pieces. Where
   // the event passes through the void it goes on to those; which of both it does is left open.
-  void add_unless_behind(const EventWedge& wedge, const ShadowEvent& event, const EventPiece& p,
+  void add_unless_behind(const EventWedge& wedge, const ShadowEvent& event, const EventSegment& p,
                          Stretch shown) {
-    for (const EventPiece& near : pieces_.pieces()) {
+    for (const EventPiece& near : met_.pieces()) {
       const double s0 = std::max(near.s0, shown.s0), s1 = std::min(near.s1, shown.s1);
       if (s0 >= s1 || near.nearness((s0 + s1) / 2) <= p.nearness((s0 + s1) / 2)) continue;
       add_shown(wedge, event, p, {shown.s0, s0});
@@ -111,7 +139,7 @@ class EventTracer {
     add_shown(wedge, event, p, shown);
   }
   // Adds what of the stretch is not hidden.
-  void add_shown(const EventWedge& wedge, const ShadowEvent& event, const EventPiece& p,
+  void add_shown(const EventWedge& wedge, const ShadowEvent& event, const EventSegment& p,
                  Stretch shown) {
     for (const Stretch& h : hidden_) {
       if (h.s1 <= shown.s0 || h.s0 >= shown.s1) continue;
@@ -120,7 +148,7 @@ class EventTracer {
     }
     add_edge(wedge, event, p, shown);
   }
-  void add_edge(const EventWedge& wedge, const ShadowEvent& event, const EventPiece& p,
+  void add_edge(const EventWedge& wedge, const ShadowEvent& event, const EventSegment& p,
                 Stretch shown) {
     if (!(shown.s1 - shown.s0 > kShortestPiece)) return;
     const auto at = [&](double s) {
@@ -129,40 +157,58 @@ class EventTracer {
     ShadowEdge edge{at(shown.s0), at(shown.s1), event.kind, p.receiver, {}};
     if (event.kind != ShadowKind::hard) {
       const double s = (shown.s0 + shown.s1) / 2;
-      edge.penumbra = Vec3f(penumbra_at(event, s, (Vec3d(edge.a) + Vec3d(edge.b)) / 2,
-                                        receivers_[p.receiver], p.face));
+      edge.penumbra = Vec3f(
+          penumbra_at(event, s, (Vec3d(edge.a) + Vec3d(edge.b)) / 2, receiver(p.receiver), p.face));
     }
-    out_.push_back(edge);
+    edges_.push_back(edge);
+  }
+  [[nodiscard]] const ShadowReceiver& receiver(std::uint32_t number) const {
+    return *std::ranges::lower_bound(receivers_, number, {}, &ShadowReceiver::number);
   }
 
-  std::span<const ShadowReceiver> receivers_;
-  std::vector<ShadowEdge>& out_;
+  std::span<const ShadowReceiver> receivers_, added_;
   WedgeWalk walk_;
-  NearestPieces pieces_;
+  NearestPieces toward_light_, met_;
+  std::vector<EventSegment> taken_, ignored_;
   std::vector<Stretch> hidden_;  // sorted
+  std::vector<ShadowEdge> edges_;
 };
+
+EventTracer::Known known_of(const FoundOnReceivers& found, std::size_t event) {
+  return {found.toward_light.of(event), found.met.of(event), found.taken.of(event),
+          found.edges.of(event)};
+}
+
+void push(FoundOnReceivers& found, const EventTracer::Known& known) {
+  found.toward_light.push(known.toward_light);
+  found.met.push(known.met);
+  found.taken.push(known.taken);
+  found.edges.push(known.edges);
+}
+
+void append(FoundOnReceivers& found, const FoundOnReceivers& more) {
+  found.toward_light.append(more.toward_light);
+  found.met.append(more.met);
+  found.taken.append(more.taken);
+  found.edges.append(more.edges);
+}
 
 }  // namespace
 
-std::vector<ShadowEdge> find_shadow_edges(std::span<const ShadowEvent> events,
-                                          std::span<const ShadowReceiver> receivers) {
+void TracedEvents::add(std::span<const ShadowReceiver> receivers,
+                       std::span<const ShadowReceiver> added) {
   constexpr std::size_t kBlock = 128;
-  const std::size_t blocks = (events.size() + kBlock - 1) / kBlock;
-  std::vector<std::vector<ShadowEdge>> found(blocks);
+  const std::size_t blocks = (events_.size() + kBlock - 1) / kBlock;
+  std::vector<FoundOnReceivers> found(blocks);
   parallel_for(blocks, {}, [&](std::size_t block) {
-    EventTracer tracer(receivers, found[block]);
-    const std::size_t first = block * kBlock;
-    for (const ShadowEvent& event :
-         events.subspan(first, std::min(kBlock, events.size() - first))) {
-      tracer.trace(event);
+    EventTracer tracer(receivers, added);
+    const std::size_t last = std::min(events_.size(), (block + 1) * kBlock);
+    for (std::size_t i = block * kBlock; i < last; ++i) {
+      push(found[block], tracer.trace(events_[i], known_of(found_, i)));
     }
   });
-  std::size_t count = 0;
-  for (const std::vector<ShadowEdge>& f : found) count += f.size();
-  std::vector<ShadowEdge> all;
-  all.reserve(count);
-  for (const std::vector<ShadowEdge>& f : found) all.insert(all.end(), f.begin(), f.end());
-  return all;
+  found_ = {};
+  for (const FoundOnReceivers& f : found) append(found_, f);
 }
 
 std::vector<ShadowEvent> transform(const Affine3d& world_from_blocker,

@@ -19,7 +19,7 @@
 #include "edgepoint/edge_raster.h"
 #include "edgepoint/edge_tree.h"
 #include "edgepoint/face_tree.h"
-#include "edgepoint/shadow_wedge.h"
+#include "edgepoint/wedge_walk.h"
 #include "render/csg_edges.h"
 #include "render/prepared_scene.h"
 

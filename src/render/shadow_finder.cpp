@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <optional>
 
+#include "base/parallel_for.h"
 #include "render/csg_shadows.h"
 #include "render/rounded_edges.h"
 
@@ -55,7 +56,7 @@ std::vector<ShadowEvent> solid_events(const CsgEdges& solid, const Affine3d& wor
   return events;
 }
 
-std::vector<ShadowEvent> find_events(const EdgeObjects::Parts& blocker, const ShadowLight& light,
+std::vector<ShadowEvent> mesh_events(const EdgeObjects::Parts& blocker, const ShadowLight& light,
                                      const Sphere& around) {
   if (const auto* area = std::get_if<ParallelogramLight>(&light)) {
     return transform(*blocker.world,
@@ -153,20 +154,20 @@ LightChanges find_changed_lights(const Scene& before, const Scene& after) {
 void ShadowFinder::add(std::span<const ShadowTriple> triples) {
   for (const ShadowTriple& t : triples) {
     Pair& pair = pairs_[{t.light, t.blocker}];
-    if (pair.receivers.insert(t.receiver).second) pair.edges_known = false;
+    if (pair.receivers.insert(t.receiver).second) pair.added.insert(t.receiver);
   }
 }
 
 void ShadowFinder::object_moved(std::uint32_t object) {
   for (auto& [key, pair] : pairs_) {
-    if (key.second == object) pair.events_known = pair.edges_known = false;
-    if (pair.receivers.contains(object)) pair.edges_known = false;
+    if (key.second == object) pair.events_known = false;
+    if (pair.receivers.contains(object)) pair.receivers_known = false;
   }
 }
 
 void ShadowFinder::light_moved(std::uint32_t light) {
   for (auto& [key, pair] : pairs_) {
-    if (key.first == light) pair.events_known = pair.edges_known = false;
+    if (key.first == light) pair.events_known = false;
   }
 }
 
@@ -175,47 +176,57 @@ void ShadowFinder::all_changed() {
   edges_ = std::make_shared<const std::vector<SoftEdge>>();
 }
 
-bool ShadowFinder::find_pair(const PreparedScene& scene, const EdgeObjects& objects,
-                             const ShadowLight& light, std::uint32_t blocker, Pair& pair) const {
+bool ShadowFinder::find_events(const PreparedScene& scene, const EdgeObjects& objects,
+                               const ShadowLight& light, std::uint32_t blocker, Pair& pair) {
   const std::optional<EdgeObjects::Parts> parts = objects.parts(scene, blocker);
   const CsgEdges* const solid = objects.solid(blocker);
   const auto* const point = std::get_if<HomogeneousPoint>(&light);
   if (!parts && (solid == nullptr || point == nullptr)) return false;
-  if (!pair.events_known) {
-    const Sphere around = objects.bounding_sphere(scene, blocker);
-    const Affine3d& world = scene.scene().objects[blocker].world_from_object;
-    pair.events =
-        parts ? find_events(*parts, light, around) : solid_events(*solid, world, *point, around);
+  const Sphere around = objects.bounding_sphere(scene, blocker);
+  const Affine3d& world = scene.scene().objects[blocker].world_from_object;
+  pair.traced = TracedEvents(parts ? mesh_events(*parts, light, around)
+                                   : solid_events(*solid, world, *point, around));
+  pair.events_known = true;
+  pair.receivers_known = false;
+  return true;
+}
+
+void ShadowFinder::find_edges(const PreparedScene& scene, const EdgeObjects& objects,
+                              std::uint32_t blocker, Pair& pair) {
+  if (!pair.receivers_known) {
+    pair.traced.forget_receivers();
+    pair.on_solids.clear();
+    pair.added = pair.receivers;
   }
-  std::vector<ShadowReceiver> receivers;
-  pair.edges.clear();
+  std::vector<ShadowReceiver> receivers, added;
   for (const std::uint32_t receiver : pair.receivers) {
-    const std::optional<EdgeObjects::Parts> r = objects.parts(scene, receiver);
-    if (r) receivers.push_back({r->faces, *r->world, receiver == blocker, r->voids});
-    if (const CsgEdges* const on = objects.solid(receiver)) {
-      const std::vector<SoftEdge> found =
-          find_edges_on_solid(pair.events, *on, scene.scene().objects[receiver].world_from_object);
-      pair.edges.insert(pair.edges.end(), found.begin(), found.end());
+    const bool is_added = pair.added.contains(receiver);
+    if (const std::optional<EdgeObjects::Parts> r = objects.parts(scene, receiver)) {
+      receivers.push_back({receiver, r->faces, *r->world, receiver == blocker, r->voids});
+      if (is_added) added.push_back(receivers.back());
+    }
+    if (const CsgEdges* const on = objects.solid(receiver); on != nullptr && is_added) {
+      pair.on_solids[receiver] = find_edges_on_solid(
+          pair.traced.events(), *on, scene.scene().objects[receiver].world_from_object);
     }
   }
-  for (const ShadowEdge& edge : find_shadow_edges(pair.events, receivers)) {
-    pair.edges.push_back({{edge.a, edge.b}, edge.penumbra, edge.kind == ShadowKind::umbral});
-  }
-  pair.events_known = pair.edges_known = true;
-  return true;
+  if (!added.empty()) pair.traced.add(receivers, added);
+  pair.added.clear();
+  pair.receivers_known = true;
 }
 
 bool ShadowFinder::update(const PreparedScene& scene, const EdgeObjects& objects,
                           std::size_t most_events) {
-  bool changed = false, complete = true;
-  std::size_t done = 0;
+  bool complete = true;
+  std::size_t planned = 0;
   std::optional<std::vector<ShadowLight>> lights;
+  std::vector<std::pair<std::uint32_t, Pair*>> wanted;  // by blocker
   auto at = pairs_.lower_bound(next_);
   for (std::size_t i = 0; i < pairs_.size(); ++i, ++at) {
     if (at == pairs_.end()) at = pairs_.begin();
     auto& [key, pair] = *at;
-    if (pair.edges_known) continue;
-    if (done > most_events) {
+    if (pair.is_known()) continue;
+    if (planned > most_events) {
       complete = false;
       next_ = key;
       break;
@@ -223,18 +234,38 @@ bool ShadowFinder::update(const PreparedScene& scene, const EdgeObjects& objects
     if (!lights) lights = shadow_lights(scene);
     const auto& [light, blocker] = key;
     if (light >= lights->size()) continue;
-    if (!find_pair(scene, objects, (*lights)[light], blocker, pair)) continue;
-    done += pair.events.size() * pair.receivers.size();
-    changed = true;
-  }
-  if (changed) {
-    auto edges = std::make_shared<std::vector<SoftEdge>>();
-    for (const auto& [key, pair] : pairs_) {
-      edges->insert(edges->end(), pair.edges.begin(), pair.edges.end());
+    if (!pair.events_known && !find_events(scene, objects, (*lights)[light], blocker, pair)) {
+      continue;
     }
-    edges_ = std::move(edges);
+    planned +=
+        pair.traced.events().size() * (pair.receivers_known ? pair.added : pair.receivers).size();
+    wanted.emplace_back(blocker, &pair);
   }
+  // Of most pairs there is little to do.
+  parallel_for(wanted.size(), {.grain = 1}, [&](std::size_t i) {
+    find_edges(scene, objects, wanted[i].first, *wanted[i].second);
+  });
+  if (!wanted.empty()) gather_edges();
   return complete;
+}
+
+void ShadowFinder::gather_edges() {
+  std::size_t count = 0;
+  for (const auto& [key, pair] : pairs_) {
+    count += pair.traced.edges().size();
+    for (const auto& [receiver, found] : pair.on_solids) count += found.size();
+  }
+  auto edges = std::make_shared<std::vector<SoftEdge>>();
+  edges->reserve(count);
+  for (const auto& [key, pair] : pairs_) {
+    for (const auto& [receiver, found] : pair.on_solids) {
+      edges->insert(edges->end(), found.begin(), found.end());
+    }
+    for (const ShadowEdge& edge : pair.traced.edges()) {
+      edges->push_back({{edge.a, edge.b}, edge.penumbra, edge.kind == ShadowKind::umbral});
+    }
+  }
+  edges_ = std::move(edges);
 }
 
 }  // namespace arris

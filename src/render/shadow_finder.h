@@ -1,8 +1,10 @@
 // shadow_finder.h — shadow edges of a scene, found for what is seen and kept while nothing moves
 // What       The shader tells which object stands between a point that it shades and a light: a triple of light,
-//            blocker and receiver. For each pair of light and blocker the finder keeps the events, and the edges on
-//            all its receivers, which are clipped against each other. What a move changes is found again.
-// Guarantee  the same calls give the same edges in the same order, at any number of threads; before point-like
+//            blocker and receiver. For each pair of light and blocker the finder keeps the events, and what of them is
+//            on which receiver, clipped against each other: a new receiver adds its edges and hides others. What a move
+//            changes is found again.
+// Guarantee  the same triples give the same edges in the same order, however they come, once update() has returned
+//            true, at any number of threads (tests/render/shadow_finder_test.cpp); before point-like
 //            lights visibility changes only along found edges (tests/render/rounded_shadow_test.cpp)
 // Limits     solids of solids cast shadows before point-like lights only (and see csg_shadows.h). Lights are the
 //            scene's own and the sun, not what emits by material. Where receivers are rounded, edges lie on their sharp
@@ -55,16 +57,22 @@ class ShadowFinder {
 
  private:
   struct Pair {
-    std::set<std::uint32_t> receivers;
-    std::vector<ShadowEvent> events;  // in the world
-    std::vector<SoftEdge> edges;
-    bool events_known = false, edges_known = false;
+    std::set<std::uint32_t> receivers, added;  // that are known; of these, those that wait
+    TracedEvents traced;                       // in the world
+    std::map<std::uint32_t, std::vector<SoftEdge>> on_solids;  // by receiver
+    bool events_known = false;
+    bool receivers_known = false;  // but for those added: else all are found anew
+
+    [[nodiscard]] bool is_known() const { return events_known && receivers_known && added.empty(); }
   };
   using Key = std::pair<std::uint32_t, std::uint32_t>;  // light, blocker
 
-  // False if the pair can have no edges.
-  bool find_pair(const PreparedScene& scene, const EdgeObjects& objects, const ShadowLight& light,
-                 std::uint32_t blocker, Pair& pair) const;
+  // False if the pair can have no events.
+  static bool find_events(const PreparedScene& scene, const EdgeObjects& objects,
+                          const ShadowLight& light, std::uint32_t blocker, Pair& pair);
+  static void find_edges(const PreparedScene& scene, const EdgeObjects& objects,
+                         std::uint32_t blocker, Pair& pair);
+  void gather_edges();
 
   std::map<Key, Pair> pairs_;
   Key next_{};  // where the next update begins, so that each comes in turn

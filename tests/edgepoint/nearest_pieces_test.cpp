@@ -13,9 +13,10 @@ namespace {
 
 constexpr double kNobody = -std::numeric_limits<double>::infinity();
 
-double nearest_at(const std::vector<EventPiece>& pieces, double s) {
+template <class Piece>
+double nearest_at(const std::vector<Piece>& pieces, double s) {
   double best = kNobody;
-  for (const EventPiece& p : pieces) {
+  for (const Piece& p : pieces) {
     if (p.s0 <= s && s <= p.s1) best = std::max(best, p.nearness(s));
   }
   return best;
@@ -25,7 +26,7 @@ TEST(NearestPieces, keeps_the_nearest_everywhere) {
   std::mt19937_64 random(1);
   std::uniform_real_distribution<double> unit(0, 1);
   for (int round = 0; round < 300; ++round) {
-    std::vector<EventPiece> all;
+    std::vector<EventSegment> all;
     NearestPieces nearest;
     const int count = 1 + int(random() % 20);
     for (int i = 0; i < count; ++i) {
@@ -65,8 +66,46 @@ TEST(NearestPieces, knows_what_is_covered) {
   nearest.insert({0, 1, 5, 6, 2, 0});
   EXPECT_EQ(nearest.least_nearness(), 5);
   EXPECT_EQ(nearest.pieces().size(), 1U);
-  nearest.clear();
+  nearest.assign({});
   EXPECT_EQ(nearest.least_nearness(), kNobody);
+}
+
+TEST(NearestPieces, say_whether_a_segment_shows) {
+  NearestPieces nearest;
+  EXPECT_TRUE(nearest.insert({0, 1, 2, 2, 0, 7}));
+  EXPECT_FALSE(nearest.insert({0.2, 0.8, 1, 1, 1, 8}));
+  EXPECT_TRUE(nearest.insert({0.2, 0.8, 1, 3, 2, 9}));
+  ASSERT_EQ(nearest.pieces().size(), 3U);
+  EXPECT_EQ(nearest.pieces()[1].of.face, 9U);
+  EXPECT_EQ(nearest.pieces()[2].of.face, 7U);
+}
+
+TEST(NearestPieces, do_not_depend_on_the_order_of_segments) {
+  std::mt19937_64 random(2);
+  std::uniform_real_distribution<double> unit(0, 1);
+  for (int round = 0; round < 2000; ++round) {
+    std::vector<EventSegment> all;
+    const auto count = std::uint32_t(2 + random() % 12);
+    for (std::uint32_t i = 0; i < count; ++i) {
+      const double s0 = !all.empty() && i % 3 == 0 ? all.back().s1 : unit(random);
+      const auto [low, high] = std::minmax({s0, unit(random)});
+      if (low == high) continue;
+      all.push_back({low, high, unit(random), unit(random), i, 0});
+      // The same surface twice.
+      if (i % 4 == 1) all.push_back({low, high, all.back().k0, all.back().k1, i, 1});
+    }
+    NearestPieces first;
+    for (const EventSegment& s : all) first.insert(s);
+    for (int again = 0; again < 3; ++again) {
+      std::ranges::shuffle(all, random);
+      NearestPieces shuffled, halfway;
+      for (std::size_t i = 0; i < all.size() / 2; ++i) halfway.insert(all[i]);
+      shuffled.assign(halfway.pieces());
+      for (std::size_t i = all.size() / 2; i < all.size(); ++i) shuffled.insert(all[i]);
+      ASSERT_EQ(shuffled.pieces(), first.pieces());
+      ASSERT_EQ(shuffled.least_nearness(), first.least_nearness());
+    }
+  }
 }
 
 }  // namespace

@@ -305,6 +305,21 @@ TEST(ShadowEdges, penumbras_are_as_wide_as_the_light_makes_them) {
   EXPECT_GE(along_x, 2);
 }
 
+TEST(ShadowEdges, penumbras_lie_in_the_plane_of_the_face_that_shows_them) {
+  ShadowScene scene = scene_on_floor();
+  scene.add(make_box_mesh({1, 1, 1}), {{}, {0, 0, 2}});
+  const Vec3d wall{1, 0, 0}, size{0.5, 8, 8};
+  scene.add(make_box_mesh(size), {{}, {-3, 0, 0}});
+  const ParallelogramLight light{{4, -0.5, 3}, {0, 1, 0}, {0, 0, 1}, {-1, 0, 0}};
+  int count = 0;
+  for (const ShadowEdge& e : scene.shadow_edges(1, light)) {
+    if (e.receiver != 2 || std::abs(double(e.a.x) + 2.75) > 1e-5) continue;
+    EXPECT_NEAR(dot(wall, Vec3d(e.penumbra)), 0, 1e-5);
+    ++count;
+  }
+  EXPECT_GT(count, 4);
+}
+
 TEST(ShadowEdges, a_light_throws_no_shadow_behind_itself) {
   ShadowScene scene = scene_on_floor();
   scene.add(make_box_mesh({1, 1, 1}), {{}, {0, 0, 1.5}});
@@ -409,10 +424,10 @@ TEST(ShadowEdges, of_all_events_are_those_of_each) {
         transform(b.world_from_object,
                   find_shadow_events(b.edges, transform(inverse(b.world_from_object), light)));
     const std::vector<ShadowReceiver> receivers = scene.receivers(blocker);
-    const std::vector<ShadowEdge> all = find_shadow_edges(events, receivers);
+    const std::vector<ShadowEdge> all = test::trace_events(events, receivers);
     std::size_t at = 0;
     for (const ShadowEvent& event : events) {
-      for (const ShadowEdge& e : find_shadow_edges(std::span(&event, 1), receivers)) {
+      for (const ShadowEdge& e : test::trace_events({event}, receivers)) {
         ASSERT_LT(at, all.size());
         EXPECT_TRUE(e.a == all[at].a && e.b == all[at].b && e.receiver == all[at].receiver);
         ++at;
@@ -420,6 +435,95 @@ TEST(ShadowEdges, of_all_events_are_those_of_each) {
     }
     EXPECT_EQ(at, all.size());
   }
+}
+
+bool is_same(const ShadowEdge& x, const ShadowEdge& y) {
+  return x.a == y.a && x.b == y.b && x.kind == y.kind && x.receiver == y.receiver &&
+         x.penumbra == y.penumbra;
+}
+
+// Bands over parts of the faces, as roundings take them.
+FaceVoids random_voids(const EdgeMesh& mesh, FinderRandom& random) {
+  FaceVoids voids;
+  voids.first.push_back(0);
+  for (std::size_t face = 0; face < mesh.triangles.size(); ++face) {
+    if (random() % 2 == 0) {
+      voids.bands.push_back({uniform(random, -1, 0.5), uniform(random, -1, 2), 0.5});
+    }
+    voids.first.push_back(std::uint32_t(voids.bands.size()));
+  }
+  return voids;
+}
+
+// Adds receivers in random order, some at a time, and compares with all at once.
+void expect_same_in_any_order(const std::vector<ShadowEvent>& events,
+                              const std::vector<ShadowReceiver>& receivers, FinderRandom& random) {
+  const std::vector<ShadowEdge> at_once = test::trace_events(events, receivers);
+  std::vector<ShadowReceiver> waiting = receivers, known;
+  std::ranges::shuffle(waiting, random);
+  TracedEvents traced(events);
+  while (!waiting.empty()) {
+    const std::size_t count = std::min<std::size_t>(waiting.size(), 1 + random() % 2);
+    std::vector<ShadowReceiver> added(waiting.end() - std::ptrdiff_t(count), waiting.end());
+    waiting.resize(waiting.size() - count);
+    known.insert(known.end(), added.begin(), added.end());
+    std::ranges::sort(added, {}, &ShadowReceiver::number);
+    std::ranges::sort(known, {}, &ShadowReceiver::number);
+    traced.add(known, added);
+  }
+  ASSERT_EQ(traced.edges().size(), at_once.size());
+  for (std::size_t i = 0; i < at_once.size(); ++i) {
+    ASSERT_TRUE(is_same(traced.edges()[i], at_once[i])) << i << " of " << at_once.size();
+  }
+}
+
+TEST(ShadowEdges, are_the_same_in_whatever_order_receivers_come) {
+  FinderRandom random(5);
+  std::size_t events_seen = 0;
+  for (int round = 0; round < 60; ++round) {
+    const ShadowScene scene = test::random_shadow_scene(
+        random, round % 2 == 0 ? test::Solids::apart : test::Solids::anywhere);
+    const ParallelogramLight area{{-1, -1, 9}, {2, 0, 0}, {0, 1, 0.5}, {0, 0, -1}};
+    const HomogeneousPoint point{{1, uniform(random, -2, 2), 9}, double(round % 3 != 0)};
+    std::vector<FaceVoids> voids;
+    for (const auto& object : scene.objects) voids.push_back(random_voids(object->mesh, random));
+    for (std::size_t blocker = 0; blocker < scene.objects.size(); ++blocker) {
+      const test::ShadowObject& b = *scene.objects[blocker];
+      const Affine3d object_from_world = inverse(b.world_from_object);
+      std::vector<ShadowEvent> of_point = transform(
+          b.world_from_object, find_shadow_events(b.edges, transform(object_from_world, point)));
+      const std::vector<ShadowEvent> of_area = transform(
+          b.world_from_object, find_shadow_events(b.edges, transform(object_from_world, area)));
+      events_seen += of_point.size() + of_area.size();
+      std::vector<ShadowReceiver> receivers = scene.receivers(blocker);
+      expect_same_in_any_order(of_area, receivers, random);
+      expect_same_in_any_order(of_point, receivers, random);
+      for (std::size_t i = 0; i < receivers.size(); ++i) receivers[i].voids = &voids[i];
+      for (ShadowEvent& event : of_point) event.void_depth = 3;
+      expect_same_in_any_order(of_point, receivers, random);
+    }
+  }
+  EXPECT_GT(events_seen, 10'000U);
+}
+
+TEST(ShadowEdges, receivers_hide_each_other_also_when_the_nearer_comes_later) {
+  ShadowScene scene = scene_on_floor();
+  scene.add(make_box_mesh({1, 1, 0.1}), {{}, {0, 0, 3}});
+  scene.add(make_box_mesh({4, 4, 0.1}), {{}, {0, 0, 1}});
+  const test::ShadowObject& b = *scene.objects[1];
+  const HomogeneousPoint light{{0, 0, 9}, 1};
+  TracedEvents traced(
+      transform(b.world_from_object,
+                find_shadow_events(b.edges, transform(inverse(b.world_from_object), light))));
+  const std::vector<ShadowReceiver> all = scene.receivers(1);
+  const std::vector<ShadowReceiver> floor{all[0]}, both{all[0], all[2]}, table{all[2]};
+  traced.add(floor, floor);
+  EXPECT_FALSE(on_receiver(traced.edges(), 0, ShadowKind::hard).empty());
+  traced.add(both, table);
+  EXPECT_TRUE(on_receiver(traced.edges(), 0, ShadowKind::hard).empty());
+  EXPECT_FALSE(on_receiver(traced.edges(), 2, ShadowKind::hard).empty());
+  traced.forget_receivers();
+  EXPECT_TRUE(traced.edges().empty());
 }
 
 }  // namespace

@@ -58,6 +58,13 @@ inline std::optional<double> hit(const std::array<Vec3d, 3>& triangle, Vec3d ori
   return t;
 }
 
+inline std::vector<ShadowEdge> trace_events(std::vector<ShadowEvent> events,
+                                            std::span<const ShadowReceiver> receivers) {
+  TracedEvents traced(std::move(events));
+  traced.add(receivers, receivers);
+  return traced.edges();
+}
+
 struct ShadowScene {
   std::vector<std::unique_ptr<ShadowObject>> objects;
 
@@ -68,7 +75,8 @@ struct ShadowScene {
   [[nodiscard]] std::vector<ShadowReceiver> receivers(std::size_t blocker) const {
     std::vector<ShadowReceiver> out;
     for (std::size_t i = 0; i < objects.size(); ++i) {
-      out.push_back({&objects[i]->faces, objects[i]->world_from_object, i == blocker});
+      out.push_back(
+          {std::uint32_t(i), &objects[i]->faces, objects[i]->world_from_object, i == blocker});
     }
     return out;
   }
@@ -78,7 +86,7 @@ struct ShadowScene {
     const ShadowObject& b = *objects[blocker];
     const std::vector<ShadowEvent> events =
         find_shadow_events(b.edges, transform(inverse(b.world_from_object), light));
-    return find_shadow_edges(transform(b.world_from_object, events), receivers(blocker));
+    return trace_events(transform(b.world_from_object, events), receivers(blocker));
   }
   template <class Light>
   [[nodiscard]] std::vector<ShadowEdge> all_shadow_edges(const Light& light) const {
