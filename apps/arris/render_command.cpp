@@ -186,7 +186,8 @@ void check_frames(const Scene& scene, FrameRange frames, const std::string& name
         "[[light.key]] likewise below their [[object]] and [[light]]");
   }
   for (int frame = frames.first; frame < frames.last; ++frame) {
-    const std::vector<std::string> problems = validate_placement(scene_at(scene, frame));
+    const std::vector<std::string> problems =
+        validate_placement(scene_at(scene, frame), NumberedFrom::one);
     if (problems.empty()) continue;
     throw Error(Error::Kind::input, fmt::format("{}: frame {}", name, frame),
                 fmt::format("{}; move the keys around it", fmt::join(problems, "\n  ")));

@@ -166,9 +166,11 @@ std::optional<std::vector<double>> TomlTableReader::numbers_of(const TomlValue& 
   }
   std::vector<double> numbers;
   for (const TomlValue& element : *array) {
-    if (const auto number = number_of(element, name, range)) numbers.push_back(*number);
+    const auto number = number_of(element, name, range);
+    // One line for each array: what is wrong with one number mostly is with all.
+    if (!number) return std::nullopt;
+    numbers.push_back(*number);
   }
-  if (numbers.size() != count) return std::nullopt;
   return numbers;
 }
 

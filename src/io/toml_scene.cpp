@@ -141,7 +141,7 @@ Scene read_toml_scene(std::string_view text, const std::string& name,
   problems.throw_if_any();
   if (!scene.animation.has_keys()) return scene;
   Scene first = scene_at(scene, 0);
-  const std::vector<std::string> wrong = validate_placement(first);
+  const std::vector<std::string> wrong = validate_placement(first, NumberedFrom::one);
   if (wrong.empty()) return first;
   throw Error(Error::Kind::input, name + ": frame 0",
               fmt::format("{}; move the keys around it", fmt::join(wrong, "\n  ")));

@@ -22,8 +22,12 @@ Mat3d rotation_matrix(Vec3d deg) {
   return z * y * x;
 }
 
-// Centred at a point and facing a direction.
+// Centred at a point and facing a direction; without edges where that is 0, as between keys that lead a light through
+// its target.
 void place_rectangle(AreaLight& light, Vec3d position, Vec3d facing, Vec3d up, Vec2d size) {
+  light.corner = position;
+  light.edge_u = light.edge_v = {};
+  if (!(length_squared(facing) > 0)) return;
   facing = normalize(facing);
   Vec3d across = cross(up, facing);
   if (length(across) < 1e-6 * length(up)) {  // up is along the view: any axis that is not will do

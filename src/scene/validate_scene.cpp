@@ -353,7 +353,9 @@ struct LightProblems {
   void operator()(const AreaLight& light) const {
     check_position(light.corner);
     check_color(where, "radiance", light.radiance, kUnbounded, problems);
-    if (!is_direction(cross(light.edge_u, light.edge_v))) {
+    if (light.edge_u == Vec3d{} && light.edge_v == Vec3d{}) {
+      problems.push_back(where + ": has no size, or lies in its own target");
+    } else if (!is_direction(cross(light.edge_u, light.edge_v))) {
       problems.push_back(fmt::format("{}: edges {} and {} span no area", where, list(light.edge_u),
                                      list(light.edge_v)));
     }
@@ -422,9 +424,9 @@ void check_camera(const Camera& camera, Problems& problems) {
   }
 }
 
-void check_lights(const Scene& scene, Problems& problems) {
+void check_lights(const Scene& scene, std::size_t first, Problems& problems) {
   for (std::size_t i = 0; i < scene.lights.size(); ++i) {
-    std::visit(LightProblems{fmt::format("light {}", i), problems}, scene.lights[i]);
+    std::visit(LightProblems{fmt::format("light {}", first + i), problems}, scene.lights[i]);
   }
 }
 
@@ -441,12 +443,13 @@ void check_image(const ImageSettings& image, Problems& problems) {
 
 }  // namespace
 
-std::vector<std::string> validate_placement(const Scene& scene) {
+std::vector<std::string> validate_placement(const Scene& scene, NumberedFrom numbered) {
+  const std::size_t first = numbered == NumberedFrom::one ? 1 : 0;
   Problems problems;
   for (std::size_t i = 0; i < scene.objects.size(); ++i) {
-    check_transform(scene.objects[i], name_of(scene.objects[i], i), problems);
+    check_transform(scene.objects[i], name_of(scene.objects[i], first + i), problems);
   }
-  check_lights(scene, problems);
+  check_lights(scene, first, problems);
   if (scene.camera) check_camera(*scene.camera, problems);
   return problems;
 }
@@ -472,7 +475,7 @@ std::vector<std::string> validate_scene(const Scene& scene) {
   for (std::size_t i = 0; i < scene.objects.size(); ++i) {
     check_object(scene, i, problems);
   }
-  check_lights(scene, problems);
+  check_lights(scene, 0, problems);
   if (scene.environment) {
     std::visit(EnvironmentProblems{problems}, *scene.environment);
   }

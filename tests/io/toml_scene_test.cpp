@@ -644,8 +644,24 @@ TEST(TomlKeys, that_make_no_scene_of_frame_0_are_refused) {
   EXPECT_EQ(refusal(kBox + "[[light]]\ntype = \"directional\"\ndirection = [0, 0, 1]\n"
                            "[[light.key]]\nframe = -1\n"
                            "[[light.key]]\nframe = 1\ndirection = [0, 0, -1]\n"),
-            "s.toml: frame 0: light 0: direction is (0, 0, 0); give a vector other than 0; move "
+            "s.toml: frame 0: light 1: direction is (0, 0, 0); give a vector other than 0; move "
             "the keys around it");
+}
+
+TEST(TomlKeys, that_lead_a_light_through_its_target_are_refused_in_words) {
+  EXPECT_EQ(refusal(kBox + "[[light]]\ntype = \"area\"\nposition = [0, 0, 3]\n"
+                           "target = [0, 0, 0]\nsize = 1\nradiance = 1\n"
+                           "[[light.key]]\nframe = -1\nposition = [0, 0, 3]\n"
+                           "[[light.key]]\nframe = 1\nposition = [0, 0, -3]\n"),
+            "s.toml: frame 0: light 1: has no size, or lies in its own target; move the keys "
+            "around it");
+}
+
+TEST(TomlScene, an_array_with_wrong_numbers_is_reported_once) {
+  EXPECT_EQ(refusal("[image]\nsize = [0, 0]\n" + kBox),
+            "s.toml:2:9: [image] size: is 0; use 1 to 65535");
+  EXPECT_EQ(refusal("[image]\nsize = [5, 0]\n" + kBox),
+            "s.toml:2:12: [image] size: is 0; use 1 to 65535");
 }
 
 TEST(TomlKeys, wrong_ones_are_refused_with_their_place) {

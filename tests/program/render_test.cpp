@@ -562,7 +562,7 @@ file = "cube.stl"
   const Outcome run = place.arris("render turn.toml -o f_#.png --size 40x30 --frames 0..8");
   EXPECT_EQ(run.code, 2);
   EXPECT_EQ(run.err,
-            "arris: turn.toml: frame 4: light 0: direction is (0, 0, 0); give a vector other than "
+            "arris: turn.toml: frame 4: light 1: direction is (0, 0, 0); give a vector other than "
             "0; move the keys around it\n");
   EXPECT_FALSE(std::filesystem::exists(place / "f_0.png"));
 }
