@@ -1,6 +1,7 @@
 #include "render/edge_objects.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
 #include <span>
@@ -60,8 +61,11 @@ bool is_textured(const Scene& scene, const Object& object) {
   return textured(object.material) || std::any_of(own.begin(), own.end(), textured);
 }
 
-// Edges of a mesh that are put into the world at a time.
-constexpr std::size_t kEdgeChunk = 4096;
+// Meshes of fewer edges are one thread's work.
+constexpr std::size_t kWholeMesh = 16'384;
+
+// Pixels around the picture from which edges are kept, as when they are projected.
+constexpr double kAround = 2;
 
 // Roundings of less than so many pixels' radius are seen as edges.
 constexpr double kSeenRadius = 0.75;
@@ -77,9 +81,23 @@ double world_radius(const RoundedGeometry& geometry) {
   return radius / std::cbrt(std::abs(determinant(geometry.frame->rounding_from_world.linear)));
 }
 
+// Before the eye and beside none of the picture's sides, in an object's coordinates.
+std::array<HalfSpace, 5> seen_part(const PixelView& view, const Affine3d& world) {
+  // Of what project() gives: (x w, y w, w).
+  const std::array<Vec3d, 5> sides{Vec3d{0, 0, 1}, Vec3d{1, 0, kAround}, Vec3d{0, 1, kAround},
+                                   Vec3d{-1, 0, view.width_px + kAround},
+                                   Vec3d{0, -1, view.height_px + kAround}};
+  const Mat3d from_pixel = transpose(view.pixel_from_world), from_world = transpose(world.linear);
+  std::array<HalfSpace, 5> out;
+  for (std::size_t i = 0; i < sides.size(); ++i) {
+    const Vec3d in_world = from_pixel * sides[i];
+    out[i] = {from_world * in_world, dot(in_world, world.translation - view.eye)};
+  }
+  return out;
+}
+
 // Area lights are seen from their front.
-void add_light_outlines(const Scene& scene, Vec3d eye, std::vector<WorldEdge>& edges,
-                        EdgeTotals& totals) {
+void add_light_outlines(const Scene& scene, Vec3d eye, std::vector<WorldEdge>& edges) {
   for (const Light& light : scene.lights) {
     const auto* area = std::get_if<AreaLight>(&light);
     if (area == nullptr || !area->visible_to_camera) continue;
@@ -90,7 +108,6 @@ void add_light_outlines(const Scene& scene, Vec3d eye, std::vector<WorldEdge>& e
     for (std::size_t i = 0; i < 4; ++i) {
       edges.push_back({Vec3f(corners[i]), Vec3f(corners[(i + 1) % 4])});
     }
-    totals.sharp += 4;
   }
 }
 
@@ -110,29 +127,14 @@ struct EdgeObjects::MeshEdges {
   EdgeMesh mesh;
   EdgeTree tree;
   FaceTree faces;
-  std::vector<std::uint32_t> sharp;
   bool outward = false;  // closed, with its normals outside: what faces away is hidden
 
   explicit MeshEdges(EdgeMesh made, bool is_outward)
-      : mesh(std::move(made)), tree(mesh), faces(mesh), outward(is_outward) {
-    for (std::uint32_t e = 0; e < mesh.edges.size(); ++e) {
-      if (mesh.is_sharp(e)) sharp.push_back(e);
-    }
-  }
+      : mesh(std::move(made)), tree(mesh), faces(mesh), outward(is_outward) {}
 
   [[nodiscard]] bool bounds_contain(Vec3d p) const {
     const Vec3d a = mesh.bounds_min, b = mesh.bounds_max;
     return p.x >= a.x && p.y >= a.y && p.z >= a.z && p.x <= b.x && p.y <= b.y && p.z <= b.z;
-  }
-
-  // Edges that the eye may see. Of meshes whose faces may be seen from both sides, all sharp ones.
-  [[nodiscard]] std::vector<std::uint32_t> find(Vec3d eye) const {
-    if (outward && !bounds_contain(eye)) return tree.find_drawn({eye, 1});
-    std::vector<std::uint32_t> found = sharp;
-    for (const std::uint32_t e : tree.find_silhouettes({eye, 1})) {
-      if (!mesh.is_sharp(e)) found.push_back(e);
-    }
-    return found;
   }
 };
 
@@ -165,6 +167,20 @@ EdgeObjects::EdgeObjects(const PreparedScene& prepared, int threads) {
     }
   });
   find_solids(prepared, threads);
+  make_tasks();
+}
+
+void EdgeObjects::make_tasks() {
+  tasks_.clear();
+  for (std::uint32_t i = 0; i < objects_.size(); ++i) {
+    const ObjectEdges& object = objects_[i];
+    if (object.solid) tasks_.push_back({i});
+    if (!object.mesh) continue;
+    if (!object.rounded.empty()) tasks_.push_back({i, 0, 0, true});
+    const auto shares = std::uint32_t(object.mesh->tree.shares().size());
+    const std::uint32_t at_once = object.mesh->mesh.edges.size() < kWholeMesh ? shares : 1;
+    for (std::uint32_t s = 0; s < shares; s += at_once) tasks_.push_back({i, s, s + at_once});
+  }
 }
 
 // Objects that are made of one tree share its edges.
@@ -204,6 +220,7 @@ std::shared_ptr<const EdgeObjects> EdgeObjects::with_roundings(const PreparedSce
     if (!out) out = std::make_shared<EdgeObjects>(*this);
     set_rounded(after, out->objects_[i]);
   }
+  if (out) out->make_tasks();
   return out;
 }
 
@@ -275,78 +292,84 @@ std::vector<EdgeObjects::RoundedEdge> EdgeObjects::find_rounded(const PreparedSc
   return out;
 }
 
-std::vector<std::vector<WorldEdge>> EdgeObjects::find_edges(const PreparedScene& prepared,
-                                                            const PixelView& view, int threads,
-                                                            EdgeTotals& totals) const {
-  struct Found {
-    std::vector<WorldEdge> edges;
-    std::uint64_t sharp = 0;
+void EdgeObjects::find_solid(const Task& task, const PreparedScene& prepared, const PixelView& view,
+                             int threads, FoundEdges::List& found) const {
+  const Affine3d& world = prepared.scene().objects[task.object].world_from_object;
+  const CsgEdges::Found of_solid =
+      objects_[task.object].solid->find(transform_point(inverse(world), view.eye), threads);
+  const auto add = [&](const CsgEdges::Segment& s) {
+    found.edges.push_back({Vec3f(transform_point(world, s.a)), Vec3f(transform_point(world, s.b))});
   };
-  // Of one object, by chunks of its mesh's edges.
-  using Chunks = std::vector<Found>;
-  const Scene& scene = prepared.scene();
+  std::ranges::for_each(of_solid.sharp, add);
+  std::ranges::for_each(of_solid.silhouette, add);
+  found.sharp = of_solid.sharp.size();
+}
+
+void EdgeObjects::find_shares(const Task& task, const PreparedScene& prepared,
+                              const PixelView& view, FoundEdges::List& found) const {
+  const ObjectEdges& object = objects_[task.object];
+  const MeshEdges& mesh = *object.mesh;
+  const Affine3d& world = prepared.scene().objects[task.object].world_from_object;
+  const std::array<HalfSpace, 5> seen = seen_part(view, world);
+  const Vec3d eye = transform_point(inverse(world), view.eye);
+  // Of meshes whose faces may be seen from both sides, all sharp edges are.
+  const bool from_outside = mesh.outward && !mesh.bounds_contain(eye);
+  const DrawnQuery query{{eye, 1}, !from_outside, seen};
+  const auto in_world = [&](Vec3f p) { return transform_point(world, Vec3d(p)); };
   const RoundedView rounded_view = make_rounded_view(view);
-  std::vector<Chunks> found(objects_.size(), Chunks(1));
-  parallel_for(objects_.size(), {.grain = 1, .threads = threads}, [&](std::size_t i) {
-    const Affine3d& world = scene.objects[i].world_from_object;
-    if (objects_[i].solid) {
-      const CsgEdges::Found of_solid =
-          objects_[i].solid->find(transform_point(inverse(world), view.eye), threads);
-      Found& first = found[i].front();
-      const auto add = [&](const CsgEdges::Segment& s) {
-        first.edges.push_back(
-            {Vec3f(transform_point(world, s.a)), Vec3f(transform_point(world, s.b))});
-      };
-      std::ranges::for_each(of_solid.sharp, add);
-      std::ranges::for_each(of_solid.silhouette, add);
-      first.sharp = of_solid.sharp.size();
-    }
-    if (!objects_[i].mesh) return;
-    const MeshEdges& object = *objects_[i].mesh;
-    const RoundedGeometry* rounding = nullptr;
-    if (!objects_[i].rounded.empty()) {
-      rounding = &prepared.rounding().geometries[objects_[i].geometry];
-    }
-    const double radius = rounding == nullptr ? 0 : world_radius(*rounding);
-    const std::vector<std::uint32_t> seen = object.find(transform_point(inverse(world), view.eye));
-    const auto add = [&](std::uint32_t e, Found& out) {
-      const MeshEdge& edge = object.mesh.edges[e];
-      const auto end = [&](std::uint32_t v) {
-        return transform_point(world, Vec3d(object.mesh.vertices[v]));
-      };
-      Vec3d a = end(edge.v0), b = end(edge.v1);
-      const RoundedEdge rounded = rounding == nullptr ? RoundedEdge::no : objects_[i].rounded[e];
-      if (rounded != RoundedEdge::no && is_seen_rounded(rounded_view, radius, (a + b) * 0.5)) {
-        if (rounded == RoundedEdge::yes) return;
-        // From within the solid the edge lies behind the surface that shows it.
-        a += normalize(view.eye - a) * (2 * radius);
-        b += normalize(view.eye - b) * (2 * radius);
+  const double radius =
+      object.rounded.empty() ? 0 : world_radius(prepared.rounding().geometries[object.geometry]);
+  for (std::uint32_t s = task.first_share; s < task.last_share; ++s) {
+    const EdgeShare& share = mesh.tree.shares()[s];
+    const std::span<const EdgeEnds> ends = mesh.tree.ends(share.group);
+    found.places.clear();
+    mesh.tree.find_drawn(share, query, found.places);
+    const std::size_t before = found.edges.size();
+    for (const std::uint32_t place : found.places) {
+      Vec3d a = in_world(ends[place].a), b = in_world(ends[place].b);
+      if (!object.rounded.empty()) {
+        const RoundedEdge rounded = object.rounded[mesh.tree.edges(share.group)[place]];
+        if (rounded != RoundedEdge::no && is_seen_rounded(rounded_view, radius, (a + b) * 0.5)) {
+          if (rounded == RoundedEdge::yes) continue;
+          // From within the solid the edge lies behind the surface that shows it.
+          a += normalize(view.eye - a) * (2 * radius);
+          b += normalize(view.eye - b) * (2 * radius);
+        }
       }
-      out.edges.push_back({Vec3f(a), Vec3f(b)});
-      out.sharp += object.mesh.is_sharp(e) ? 1 : 0;
-    };
-    const std::size_t chunks =
-        std::max<std::size_t>(1, (seen.size() + kEdgeChunk - 1) / kEdgeChunk);
-    found[i].resize(chunks);
-    parallel_for(chunks, {.grain = 1, .threads = threads}, [&](std::size_t c) {
-      const std::size_t last = std::min(seen.size(), (c + 1) * kEdgeChunk);
-      found[i][c].edges.reserve(last - c * kEdgeChunk);
-      for (std::size_t k = c * kEdgeChunk; k < last; ++k) add(seen[k], found[i][c]);
-    });
-    if (rounding != nullptr) {
-      find_rounded_outline(*rounding, rounded_view, found[i].front().edges);
+      found.edges.push_back({Vec3f(a), Vec3f(b)});
+    }
+    if (share.group != EdgeGroup::smooth) found.sharp += found.edges.size() - before;
+  }
+}
+
+void EdgeObjects::find_edges(const PreparedScene& prepared, const PixelView& view, int threads,
+                             FoundEdges& found) const {
+  found.lists_.resize(tasks_.size() + 1);
+  parallel_for(tasks_.size(), {.grain = 1, .threads = threads}, [&](std::size_t t) {
+    const Task& task = tasks_[t];
+    FoundEdges::List& list = found.lists_[t];
+    list.edges.clear();
+    list.sharp = 0;
+    if (objects_[task.object].solid) {
+      find_solid(task, prepared, view, threads, list);
+    } else if (task.rounded_outline) {
+      find_rounded_outline(prepared.rounding().geometries[objects_[task.object].geometry],
+                           make_rounded_view(view), list.edges);
+    } else {
+      find_shares(task, prepared, view, list);
     }
   });
-  std::vector<std::vector<WorldEdge>> edges(1);
-  for (Chunks& chunks : found) {
-    for (Found& f : chunks) {
-      totals.sharp += f.sharp;
-      totals.silhouette += f.edges.size() - f.sharp;
-      if (!f.edges.empty()) edges.push_back(std::move(f.edges));
-    }
+  FoundEdges::List& of_lights = found.lists_.back();
+  of_lights.edges.clear();
+  add_light_outlines(prepared.scene(), view.eye, of_lights.edges);
+  of_lights.sharp = of_lights.edges.size();
+  found.spans_.clear();
+  found.totals_ = {};
+  for (const FoundEdges::List& list : found.lists_) {
+    found.totals_.sharp += list.sharp;
+    found.totals_.silhouette += list.edges.size() - list.sharp;
+    if (!list.edges.empty()) found.spans_.emplace_back(list.edges);
   }
-  add_light_outlines(scene, view.eye, edges.front(), totals);
-  return edges;
 }
 
 std::optional<EdgeObjects::Parts> EdgeObjects::parts(const PreparedScene& prepared,

@@ -34,16 +34,35 @@ struct EdgeTotals {
   std::uint64_t silhouette = 0, sharp = 0, shadow = 0;
 };
 
+// The edges of a frame, and memory that the next one uses again.
+class FoundEdges {
+ public:
+  // In the world.
+  [[nodiscard]] std::span<const std::span<const WorldEdge>> lists() const { return spans_; }
+  [[nodiscard]] const EdgeTotals& totals() const { return totals_; }
+
+ private:
+  friend class EdgeObjects;
+  struct List {
+    std::vector<WorldEdge> edges;
+    std::vector<std::uint32_t> places;  // while a tree is searched
+    std::uint64_t sharp = 0;
+  };
+
+  std::vector<List> lists_;
+  std::vector<std::span<const WorldEdge>> spans_;
+  EdgeTotals totals_;
+};
+
 class EdgeObjects {
  public:
   EdgeObjects(const PreparedScene& prepared, int threads);
   ~EdgeObjects();
 
-  // In the world, in lists: those of lights, then those of the objects. The scene is the one this was made of, or one
-  // whose objects, camera and lights have moved since.
-  std::vector<std::vector<WorldEdge>> find_edges(const PreparedScene& prepared,
-                                                 const PixelView& view, int threads,
-                                                 EdgeTotals& totals) const;
+  // All edges of the picture, and few beside it. The scene is the one this was made of, or one whose objects, camera and lights
+  // have moved since.
+  void find_edges(const PreparedScene& prepared, const PixelView& view, int threads,
+                  FoundEdges& found) const;
   // What shadows need of an object; nothing if it is no mesh. Valid while both are.
   struct Parts {
     const EdgeMesh* mesh = nullptr;
@@ -86,12 +105,26 @@ class EdgeObjects {
     FaceVoids voids;                                                       // Parts'
   };
 
+  // What one thread does of a frame: an object's solid, or shares of its tree, or its rounded outline.
+  struct Task {
+    std::uint32_t object = 0;
+    std::uint32_t first_share = 0, last_share = 0;
+    bool rounded_outline = false;
+  };
+
   void find_solids(const PreparedScene& prepared, int threads);
+  void make_tasks();
   static void set_rounded(const PreparedScene& prepared, ObjectEdges& object);
   static std::vector<RoundedEdge> find_rounded(const PreparedScene& prepared,
                                                const ObjectEdges& object);
 
+  void find_solid(const Task& task, const PreparedScene& prepared, const PixelView& view,
+                  int threads, FoundEdges::List& found) const;
+  void find_shares(const Task& task, const PreparedScene& prepared, const PixelView& view,
+                   FoundEdges::List& found) const;
+
   std::vector<ObjectEdges> objects_;
+  std::vector<Task> tasks_;
 };
 
 }  // namespace arris

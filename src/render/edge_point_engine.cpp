@@ -191,14 +191,12 @@ class EdgePointEngine::Impl {
   void make_frame(const CameraRays& camera) {
     const PixelView view = make_pixel_view(camera, image_);
     const Clock::time_point start = Clock::now();
-    EdgeTotals totals;
-    std::vector<std::vector<WorldEdge>> found;
     if (settings_.use_edges) {
-      found = shown_.objects->find_edges(*shown_.scene, view, settings_.threads, totals);
+      shown_.objects->find_edges(*shown_.scene, view, settings_.threads, edges_);
     }
-    std::vector<std::span<const WorldEdge>> edges(found.begin(), found.end());
     const bool shadows = settings_.use_edges && settings_.shadow_edges;
     if (shadows && !workers_) updater_.find_shadows(shown_);
+    EdgeTotals totals = edges_.totals();
     totals.shadow = shown_.shadow_edges->size();
     stats_.stages.edges = milliseconds_since(start);
     FrameSettings frame{
@@ -209,7 +207,7 @@ class EdgePointEngine::Impl {
       };
     }
     const FrameReport report =
-        maker_.make(view, {edges, *shown_.shadow_edges}, cache_, frame, picture_);
+        maker_.make(view, {edges_.lists(), *shown_.shadow_edges}, cache_, frame, picture_);
     film_.blend_into(picture_, kNeighbors * float(shader_.paths), settings_.threads);
     stats_.stages.total = frame_ms_ = milliseconds_since(start);
     keep_report(report, totals);
@@ -398,6 +396,7 @@ class EdgePointEngine::Impl {
   std::shared_ptr<const std::vector<ShadowLight>> lights_;
   PointCache cache_;
   FrameMaker maker_;
+  FoundEdges edges_;
   Image picture_;
   TextureTints tints_;
   StillFilm film_;

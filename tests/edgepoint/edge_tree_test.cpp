@@ -4,6 +4,10 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
+#include <cstdint>
+#include <iterator>
+#include <utility>
 #include <vector>
 
 #include "edgepoint/finder_meshes.h"
@@ -28,6 +32,22 @@ std::vector<std::uint32_t> all_with(const EdgeMesh& mesh, const Predicate& holds
   return edges;
 }
 
+std::vector<std::uint32_t> find_drawn(const EdgeTree& tree, const DrawnQuery& query) {
+  std::vector<std::uint32_t> edges, places;
+  for (const EdgeShare& share : tree.shares()) {
+    places.clear();
+    tree.find_drawn(share, query, places);
+    for (const std::uint32_t place : places) {
+      const std::uint32_t e = tree.edges(share.group)[place];
+      const EdgeEnds ends = tree.ends(share.group)[place];
+      EXPECT_EQ(ends.a, tree.mesh().vertices[tree.mesh().edges[e].v0]);
+      EXPECT_EQ(ends.b, tree.mesh().vertices[tree.mesh().edges[e].v1]);
+      edges.push_back(e);
+    }
+  }
+  return sorted(std::move(edges));
+}
+
 TEST(EdgeTree, agrees_with_brute_force) {
   for (std::uint64_t seed = 1; seed <= 6; ++seed) {
     FinderRandom random(seed);
@@ -41,12 +61,49 @@ TEST(EdgeTree, agrees_with_brute_force) {
         ASSERT_EQ(sorted(tree.find_silhouettes(from)),
                   all_with(mesh, [&](std::uint32_t e) { return is_silhouette(mesh, e, from); }))
             << m.name;
-        ASSERT_EQ(sorted(tree.find_drawn(from)),
+        ASSERT_EQ(find_drawn(tree, {from, false, {}}),
                   all_with(mesh, [&](std::uint32_t e) { return is_drawn(mesh, e, from); }))
+            << m.name;
+        ASSERT_EQ(
+            find_drawn(tree, {from, true, {}}),
+            all_with(mesh,
+                     [&](std::uint32_t e) { return mesh.is_sharp(e) || is_drawn(mesh, e, from); }))
             << m.name;
       }
     }
   }
+}
+
+// What is left out lies outside of one of the half spaces; some of it is.
+TEST(EdgeTree, leaves_out_only_what_is_outside) {
+  FinderRandom random(3);
+  std::size_t left_out = 0;
+  for (const test::NamedMesh& m : test::make_finder_meshes(3)) {
+    const EdgeMesh mesh = test::edges_of(m.mesh);
+    const EdgeTree tree(mesh);
+    const Vec3d middle = (mesh.bounds_min + mesh.bounds_max) * 0.5;
+    for (int i = 0; i < 30; ++i) {
+      const HomogeneousPoint from = test::random_viewpoint(mesh, random);
+      const Vec3d d = test::random_point(random, 1), e = test::random_point(random, 1);
+      const std::array<HalfSpace, 2> within{HalfSpace{d, -dot(d, middle)},
+                                            HalfSpace{e, -dot(e, middle)}};
+      const std::vector<std::uint32_t> all = find_drawn(tree, {from, false, {}});
+      const std::vector<std::uint32_t> some = find_drawn(tree, {from, false, within});
+      ASSERT_TRUE(std::ranges::includes(all, some));
+      std::vector<std::uint32_t> rest;
+      std::ranges::set_difference(all, some, std::back_inserter(rest));
+      left_out += rest.size();
+      for (const std::uint32_t edge : rest) {
+        ASSERT_TRUE(std::ranges::any_of(within, [&](const HalfSpace& h) {
+          const auto at = [&](std::uint32_t v) {
+            return dot(h.direction, Vec3d(mesh.vertices[v])) + h.offset;
+          };
+          return at(mesh.edges[edge].v0) < 0 && at(mesh.edges[edge].v1) < 0;
+        })) << m.name;
+      }
+    }
+  }
+  EXPECT_GT(left_out, 1000U);
 }
 
 TEST(EdgeTree, agrees_with_brute_force_for_area_lights) {
@@ -102,7 +159,7 @@ TEST(EdgeTree, visits_little_of_a_smooth_mesh) {
 TEST(EdgeTree, has_no_edges_without_triangles) {
   const EdgeMesh mesh = test::edges_of(Mesh{});
   const EdgeTree tree(mesh);
-  EXPECT_TRUE(tree.find_drawn({{1, 2, 3}, 1}).empty());
+  EXPECT_TRUE(tree.shares().empty());
 }
 
 }  // namespace
