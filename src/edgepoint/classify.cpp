@@ -72,16 +72,6 @@ struct Corners {
 
 }  // namespace
 
-std::size_t EdgePointImage::bytes() const {
-  std::size_t sum = crossings.upper.bytes() + crossings.left.bytes() + crossings.mid_row.bytes() +
-                    crossings.mid_column.bytes() + codes.size() * sizeof(PixelCode) +
-                    points.size() * sizeof(PointKey) + samples.bytes() + occupied.bytes();
-  for (const BitPlane& plane : corners.primary) sum += plane.bytes();
-  for (const BitPlane& plane : corners.secondary) sum += plane.bytes();
-  for (const BitPlane& plane : reach.planes) sum += plane.bytes();
-  return sum;
-}
-
 PixelClasses classify_pixels(RowBand band, EdgePointImage& image) {
   PixelClasses classes;
   const int width = image.width_px;

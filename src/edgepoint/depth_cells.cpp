@@ -82,8 +82,4 @@ void DepthCells::copy_nearest(int y, std::span<float> out) const {
   for (int x = 0; x < width_; ++x) out[std::size_t(x)] = row[(x + kSide / 2) / kSide].nearest;
 }
 
-float PointKey::depth() const {
-  return std::bit_cast<float>(std::uint32_t(bits_ >> 32U));
-}
-
 }  // namespace arris

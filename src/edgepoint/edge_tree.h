@@ -1,17 +1,16 @@
 // edge_tree.h — finds the edges of a mesh that a viewpoint sees as outline, without looking at all of them
 // What       a tree over the edges. Each node bounds the normals and the positions of its edges' faces by interval
 //            vectors: where normal · (viewpoint − position) cannot change sign, no edge below is a silhouette.
-// In / Out   the mesh's own coordinates; edges by their index in the EdgeMesh, in the tree's order
 //            find_drawn() works on a share of the tree at a time, for threads to share a mesh, and leaves out what is
 //            beside the picture.
+// In / Out   the mesh's own coordinates; edges by their index in the EdgeMesh, in the tree's order
 // Guarantee  finds exactly the edges for which the predicate of edge_mesh.h holds, for every viewpoint: at infinity,
 //            on the surface, within it (tests/edgepoint/edge_tree_test.cpp). Bounds and planes are stored as float; a
 //            sign that is within kSignMargin of zero is not believed: nodes are entered, edges put to the predicate.
 //            Same tree, same order, with any number of threads.
 // Limits     viewpoints finite. Keeps a reference to the mesh, which must outlive it and not move.
 // Cost       build n log n, parallel; query about proportional to what is found, on all cores for one viewpoint of a
-//            large tree. Const afterwards, queries from any
-//            number of threads.
+//            large tree. Const afterwards, queries from any number of threads.
 // Source     Bala, Walter, Greenberg 2003, section 6.4. As there: interval vectors, split on one axis where the
 //            children are smallest, edges whose normals span more than half of their node's stay at the node. Beyond
 //            it: size counts by how many edges a child has, and positions are split on as well as normals, for which

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 namespace arris {
 namespace {
@@ -118,6 +119,35 @@ bool clip_to_front(ShadowEvent& event, const Emission& emission) {
   return true;
 }
 
+// Kind of the VE event of corner i and an edge, if it is one.
+std::optional<ShadowKind> ve_event(const EdgeMesh& mesh, std::uint32_t edge, const Corners& corners,
+                                   std::size_t i) {
+  const HomogeneousPoint from{corners[i], 1};
+  if (!is_silhouette(mesh, edge, from)) return std::nullopt;
+  const MeshEdge& e = mesh.edges[edge];
+  // One number for each edge of the light, so that the planes of both its corners agree on it.
+  const double to_next = turn(mesh, e, corners[i], corners[next(i)]);
+  const double to_previous = -turn(mesh, e, corners[previous(i)], corners[i]);
+  const double low = std::min(to_next, to_previous), high = std::max(to_next, to_previous);
+  if ((low < 0 && high > 0) || (low == 0 && high == 0)) return std::nullopt;
+  const double light_side = high > 0 ? 1 : -1;
+  return light_side == blocker_side(mesh, e, from) ? ShadowKind::umbral : ShadowKind::penumbral;
+}
+
+// Whether the light's edge from corner i to the next and vertex q are a penumbral EV event.
+bool is_penumbral_ev_event(const EdgeMesh& mesh, std::uint32_t q, const Corners& corners,
+                           std::size_t i) {
+  const std::optional<Vec3d> n = ev_plane(position(mesh, q), corners, i);
+  if (!n) return false;
+  bool any = false;
+  for (const std::uint32_t e : mesh.around(q)) {
+    const double side = side_of(mesh, q, *n, other_end(mesh.edges[e], q));
+    if (side > 0) return false;
+    any = any || side < 0;
+  }
+  return any;
+}
+
 struct UmbralEdge {
   std::uint32_t vertex, edge;  // one of its ends
   std::size_t corner;
@@ -172,33 +202,6 @@ ShadowEvent transform(const Affine3d& m, const ShadowEvent& event) {
   }
   out.across = transform_vector(m, event.across);
   return out;
-}
-
-std::optional<ShadowKind> ve_event(const EdgeMesh& mesh, std::uint32_t edge, const Corners& corners,
-                                   std::size_t i) {
-  const HomogeneousPoint from{corners[i], 1};
-  if (!is_silhouette(mesh, edge, from)) return std::nullopt;
-  const MeshEdge& e = mesh.edges[edge];
-  // One number for each edge of the light, so that the planes of both its corners agree on it.
-  const double to_next = turn(mesh, e, corners[i], corners[next(i)]);
-  const double to_previous = -turn(mesh, e, corners[previous(i)], corners[i]);
-  const double low = std::min(to_next, to_previous), high = std::max(to_next, to_previous);
-  if ((low < 0 && high > 0) || (low == 0 && high == 0)) return std::nullopt;
-  const double light_side = high > 0 ? 1 : -1;
-  return light_side == blocker_side(mesh, e, from) ? ShadowKind::umbral : ShadowKind::penumbral;
-}
-
-bool is_penumbral_ev_event(const EdgeMesh& mesh, std::uint32_t q, const Corners& corners,
-                           std::size_t i) {
-  const std::optional<Vec3d> n = ev_plane(position(mesh, q), corners, i);
-  if (!n) return false;
-  bool any = false;
-  for (const std::uint32_t e : mesh.around(q)) {
-    const double side = side_of(mesh, q, *n, other_end(mesh.edges[e], q));
-    if (side > 0) return false;
-    any = any || side < 0;
-  }
-  return any;
 }
 
 std::vector<ShadowEvent> find_shadow_events(const EdgeTree& blocker,

@@ -22,7 +22,6 @@
 
 #include <array>
 #include <cstdint>
-#include <optional>
 #include <span>
 #include <vector>
 
@@ -68,12 +67,5 @@ ShadowEvent transform(const Affine3d& m, const ShadowEvent& event);
 std::vector<ShadowEvent> find_shadow_events(const EdgeTree& blocker, const HomogeneousPoint& light);
 std::vector<ShadowEvent> find_shadow_events(const EdgeTree& blocker,
                                             const ParallelogramLight& light);
-
-// The predicates. Kind of the VE event of corner i and an edge, if it is one.
-std::optional<ShadowKind> ve_event(const EdgeMesh& mesh, std::uint32_t edge,
-                                   const std::array<Vec3d, 4>& corners, std::size_t i);
-// Whether the light's edge from corner i to the next and vertex q are a penumbral EV event.
-bool is_penumbral_ev_event(const EdgeMesh& mesh, std::uint32_t q,
-                           const std::array<Vec3d, 4>& corners, std::size_t i);
 
 }  // namespace arris

@@ -27,7 +27,6 @@ class CsgEdges {
   // Where rays from the eye touch the solid first and go on beside it: where its shadow may begin.
   [[nodiscard]] std::vector<Segment> find_touched(Vec3d eye, int threads) const;
 
-  [[nodiscard]] const std::vector<CreaseSegment>& creases() const { return creases_; }
   [[nodiscard]] const CellProbe& probe() const { return *probe_; }
   // Bounds of the solid's surface.
   [[nodiscard]] Box3d bounds() const;

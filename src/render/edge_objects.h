@@ -1,9 +1,9 @@
 // edge_objects.h — the edges of a prepared scene's objects, ready to be found from any eye
 // What       builds the edge tree of every mesh once; objects that share a mesh share it. An edge is drawn as a
-//            silhouette,
-//            or wherever it can be seen if shading jumps across it: where the faces of a flat mesh turn, where vertex
-//            normals, materials or texture coordinates differ on its two sides, or where it is open. Solids of solids
-//            have their own edges (csg_edges.h).
+//            silhouette, or wherever it can be seen if shading jumps across it: where the faces of a flat mesh turn,
+//            where vertex normals, materials or texture coordinates differ on its two sides, or where it is open.
+//            Solids of solids have their own edges (csg_edges.h). A frame's edges are found by all threads, each
+//            taking shares of the trees.
 // Source     Bala, Walter, Greenberg (2003), §6.1, §6.2
 #pragma once
 
@@ -59,8 +59,8 @@ class EdgeObjects {
   EdgeObjects(const PreparedScene& prepared, int threads);
   ~EdgeObjects();
 
-  // All edges of the picture, and few beside it. The scene is the one this was made of, or one whose objects, camera and lights
-  // have moved since.
+  // All edges of the picture, and few beside it. The scene is the one this was made of, or one whose objects, camera
+  // and lights have moved since.
   void find_edges(const PreparedScene& prepared, const PixelView& view, int threads,
                   FoundEdges& found) const;
   // What shadows need of an object; nothing if it is no mesh. Valid while both are.

@@ -144,7 +144,7 @@ void SceneUpdater::update_shadows(ShownScene& shown, const std::vector<ShadowTri
     }
   }
   const bool complete = finder_.update(*shown.scene, *shown.objects, kShadowEvents);
-  shown.shadow_edges = finder_.shared_edges();
+  shown.shadow_edges = finder_.edges();
   ScenePtr before = shown.scene;
   const std::lock_guard lock(mutex_);
   complete_ = complete;

@@ -51,9 +51,8 @@ class ShadowFinder {
 
   // Finds what is missing, up to about so many events; false if some of it waits.
   bool update(const PreparedScene& scene, const EdgeObjects& objects, std::size_t most_events);
-  [[nodiscard]] const std::vector<SoftEdge>& edges() const { return *edges_; }
-  // The same, to be kept: the next update leaves them alone.
-  [[nodiscard]] std::shared_ptr<const std::vector<SoftEdge>> shared_edges() const { return edges_; }
+  // To be kept: the next update leaves them alone.
+  [[nodiscard]] std::shared_ptr<const std::vector<SoftEdge>> edges() const { return edges_; }
 
  private:
   struct Pair {

@@ -38,7 +38,7 @@ class Shadowed {
     finder.add(triples);
     while (!finder.update(*scene_, objects, 1'000'000)) {
     }
-    for (const SoftEdge& e : finder.edges()) edges_.push_back(e.edge);
+    for (const SoftEdge& e : *finder.edges()) edges_.push_back(e.edge);
     light_ = std::get<HomogeneousPoint>(shadow_lights(*scene_)[0]);
   }
 
