@@ -149,7 +149,7 @@ FrameReport FrameMaker::make(const PixelView& view, const FrameEdges& edges, Poi
                [&](std::size_t i) { find_reach(image_.corners, bands_[i], image_.reach); });
   report.times.reachability = watch.lap();
 
-  std::span<const std::uint32_t> objects;
+  PointObjects objects;
   if (!settings.edges_are_missing) objects = cache.objects();
   std::vector<std::vector<std::uint32_t>> hidden(bands_.size());
   parallel_for(bands_.size(), parallel, [&](std::size_t i) {

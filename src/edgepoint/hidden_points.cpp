@@ -139,8 +139,8 @@ class DepthFit {
 // Rows of a band, with those around it.
 class HiddenFinder {
  public:
-  HiddenFinder(const EdgePointImage& image, std::span<const std::uint32_t> objects,
-               const DepthCells& cells, RowBand band, float pixel_size)
+  HiddenFinder(const EdgePointImage& image, const PointObjects& objects, const DepthCells& cells,
+               RowBand band, float pixel_size)
       : image_(image),
         objects_(objects),
         cells_(cells),
@@ -238,7 +238,7 @@ class HiddenFinder {
   }
 
   const EdgePointImage& image_;
-  std::span<const std::uint32_t> objects_;
+  PointObjects objects_;
   const DepthCells& cells_;
   RowBand band_;
   float pixel_size_;
@@ -252,9 +252,8 @@ class HiddenFinder {
 }  // namespace
 
 std::vector<std::uint32_t> find_hidden_points(const EdgePointImage& image,
-                                              std::span<const std::uint32_t> objects,
-                                              const DepthCells& cells, RowBand band,
-                                              float pixel_size) {
+                                              const PointObjects& objects, const DepthCells& cells,
+                                              RowBand band, float pixel_size) {
   return HiddenFinder(image, objects, cells, band, pixel_size).find();
 }
 

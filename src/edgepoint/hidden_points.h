@@ -26,9 +26,8 @@ namespace arris {
 // Offsets of the pixels of a band whose points are hidden. objects: by point; none: as if
 // of one. pixel_size: DepthCells'.
 std::vector<std::uint32_t> find_hidden_points(const EdgePointImage& image,
-                                              std::span<const std::uint32_t> objects,
-                                              const DepthCells& cells, RowBand band,
-                                              float pixel_size);
+                                              const PointObjects& objects, const DepthCells& cells,
+                                              RowBand band, float pixel_size);
 
 // Takes away the points of these pixels.
 void remove_points(std::span<const std::uint32_t> pixels, EdgePointImage& image);

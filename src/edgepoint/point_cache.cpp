@@ -12,6 +12,13 @@ namespace {
 constexpr int kMostExponent = 31;
 constexpr std::size_t kNoBlock = ~std::size_t{0};
 
+// By more than rounding.
+bool turns(const Mat3d& m) {
+  const Mat3d none;
+  const auto differs = [](Vec3d a, Vec3d b) { return length_squared(a - b) > 1e-18; };
+  return differs(m.x, none.x) || differs(m.y, none.y) || differs(m.z, none.z);
+}
+
 }  // namespace
 
 std::uint32_t pack_radiance(Rgb radiance) {
@@ -40,7 +47,8 @@ PointCache::PointCache(std::size_t capacity)
   y_.resize(places);
   z_.resize(places);
   looks_.resize(places);
-  object_.resize(places);
+  normal_.resize(places);
+  lower_object_.resize(places);
 }
 
 std::size_t PointCache::room_for(bool far, std::uint32_t frame) {
@@ -72,8 +80,11 @@ void PointCache::put(PointBlock& block, PointNumber number, const ShadedPoint& p
   x_[number] = point.position.x;
   y_[number] = point.position.y;
   z_[number] = point.position.z;
-  looks_[number] = {pack_radiance(point.radiance), std::uint16_t(frame), 0};
-  object_[number] = point.object;
+  ARRIS_CHECK(point.object <= kFarObject, double(point.object));
+  looks_[number] = {pack_radiance(point.radiance), 0, std::uint8_t(frame / kFramesOfAge),
+                    std::uint8_t(point.object >> 16U)};
+  lower_object_[number] = std::uint16_t(point.object);
+  normal_[number] = block.is_far ? kNoNormal : pack_normal(point.normal);
   const bool is_only = block.count == 1;
   block.lower = is_only ? point.position : min(block.lower, point.position);
   block.upper = is_only ? point.position : max(block.upper, point.position);
@@ -103,11 +114,13 @@ void PointCache::move(std::span<const std::optional<Affine3d>> to_from) {
     PointBlock& block = blocks_[b];
     const auto first = PointNumber(b * kPointBlock);
     for (PointNumber i = first; i < first + block.count; ++i) {
-      if (object_[i] >= to_from.size() || !to_from[object_[i]]) continue;
-      const Vec3f p(transform_point(*to_from[object_[i]], Vec3d(position(i))));
+      const std::uint32_t object = objects()[i];
+      if (object >= to_from.size() || !to_from[object]) continue;
+      const Vec3f p(transform_point(*to_from[object], Vec3d(position(i))));
       x_[i] = p.x;
       y_[i] = p.y;
       z_[i] = p.z;
+      if (turns(to_from[object]->linear)) normal_[i] = kNoNormal;
       make_stale(kMovedStale, looks_[i]);
       block.lower = min(block.lower, p);
       block.upper = max(block.upper, p);
@@ -131,7 +144,8 @@ std::size_t PointCache::size() const {
 }
 
 std::size_t PointCache::bytes() const {
-  return x_.size() * (3 * sizeof(float) + sizeof(PointLook) + sizeof(std::uint32_t)) +
+  return x_.size() * (3 * sizeof(float) + sizeof(PackedNormal) + sizeof(PointLook) +
+                      sizeof(std::uint16_t)) +
          blocks_.size() * sizeof(PointBlock);
 }
 

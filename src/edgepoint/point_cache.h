@@ -19,11 +19,12 @@
 #include <vector>
 
 #include "arris/math.h"
+#include "edgepoint/packed_normal.h"
 
 namespace arris {
 
 // Of points that lie on no object.
-inline constexpr std::uint32_t kFarObject = 0xffffffff;
+inline constexpr std::uint32_t kFarObject = 0xffffff;
 
 // A point's number: its block's times kPointBlock, and its place there.
 using PointNumber = std::uint32_t;
@@ -33,8 +34,10 @@ inline constexpr PointNumber kNoPoint = ~PointNumber{0};
 struct ShadedPoint {
   Vec3f position;  // in the world; of far points: the direction, unit
   Rgb radiance;
-  std::uint32_t object = kFarObject;  // the shader's number; kFarObject: the ray left the scene
-  PointNumber replaces = kNoPoint;    // the point that was seen where this was asked for
+  Vec3f normal;  // of the surface, on the side that was seen; 0: of all sides
+  std::uint32_t object =
+      kFarObject;  // the shader's number, at most kFarObject, which says that: the ray left the scene
+  PointNumber replaces = kNoPoint;  // the point that was seen where this was asked for
 };
 
 // Shared exponent, nine bits a channel: 0 to 65408, a step of 1/512 of the largest channel's power of two.
@@ -47,12 +50,33 @@ inline Rgb unpack_radiance(std::uint32_t packed) {
   return Rgb{float(packed & 511U), float(packed >> 9U & 511U), float(packed >> 18U & 511U)} * scale;
 }
 
+// Ages are counted in so many frames.
+inline constexpr std::uint32_t kFramesOfAge = 16;
+
 // What a pixel takes of its point: together, as they are read in no order.
 struct PointLook {
   std::uint32_t packed_radiance = 0;
-  std::uint16_t born = 0;  // the frame's number, modulo 2^16
   // How much it shows what is no longer so: what its pixel wants, 256 times.
   std::uint16_t stale = 0;
+  std::uint8_t born = 0;          // the frame's number / kFramesOfAge, modulo 2^8
+  std::uint8_t upper_object = 0;  // of the number's 24 bits
+};
+
+// Of points, by their numbers.
+class PointObjects {
+ public:
+  PointObjects() = default;
+  PointObjects(std::span<const std::uint16_t> lower, std::span<const PointLook> looks)
+      : lower_(lower), looks_(looks) {}
+
+  [[nodiscard]] bool empty() const { return lower_.empty(); }
+  [[nodiscard]] std::uint32_t operator[](PointNumber number) const {
+    return lower_[number] | std::uint32_t(looks_[number].upper_object) << 16U;
+  }
+
+ private:
+  std::span<const std::uint16_t> lower_;
+  std::span<const PointLook> looks_;
 };
 
 inline constexpr std::uint32_t kPointBlock = 256;
@@ -81,7 +105,8 @@ class PointCache {
 
   // Takes the points of one frame in, those that replace others into their places.
   void add(std::span<const ShadedPoint> points, std::uint32_t frame);
-  // Moves the points of objects, and makes them kMovedStale. to_from: by object; those without value stay.
+  // Moves the points of objects, and makes them kMovedStale. to_from: by object; those without value stay. Points that
+  // turn are shown from all sides from then on: small turns would be lost in their normals.
   void move(std::span<const std::optional<Affine3d>> to_from);
   // Makes points stale: those for which is_stale(position) holds, of blocks for which may_hold(lower, upper) does.
   template <class MayHold, class IsStale>
@@ -94,8 +119,9 @@ class PointCache {
   [[nodiscard]] const float* x() const { return x_.data(); }
   [[nodiscard]] const float* y() const { return y_.data(); }
   [[nodiscard]] const float* z() const { return z_.data(); }
+  [[nodiscard]] const PackedNormal* normals() const { return normal_.data(); }
   [[nodiscard]] std::span<const PointLook> looks() const { return looks_; }
-  [[nodiscard]] std::span<const std::uint32_t> objects() const { return object_; }
+  [[nodiscard]] PointObjects objects() const { return {lower_object_, looks_}; }
 
   // How many points of each block were seen.
   void set_seen(std::span<const std::uint32_t> seen);
@@ -117,8 +143,9 @@ class PointCache {
   std::size_t most_blocks_;
   std::vector<PointBlock> blocks_;
   std::vector<float> x_, y_, z_;
+  std::vector<PackedNormal> normal_;
   std::vector<PointLook> looks_;
-  std::vector<std::uint32_t> object_;
+  std::vector<std::uint16_t> lower_object_;
   std::array<std::size_t, 2> open_{};  // the block being filled: of near points, and of far ones
 };
 

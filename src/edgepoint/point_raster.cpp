@@ -24,11 +24,13 @@ struct FloatView {
   std::array<float, 3> x, y, w;  // rows of pixel_from_world
   std::array<float, 3> eye;
   float width, height;
+  float longest;  // of what lies in the picture at depth 1: its distance
 };
 
 // The points of a block.
 struct BlockPoints {
   const float *x, *y, *z;
+  const PackedNormal* normals;
   std::uint32_t first;  // number
   std::uint32_t count;
   bool is_far;
@@ -53,6 +55,26 @@ namespace arris::HWY_NAMESPACE {
 namespace {
 
 namespace hn = hwy::HWY_NAMESPACE;
+
+// Points that the eye at the origin is behind; a point is at depth w.
+template <class F, class V = hn::Vec<F>>
+HWY_INLINE hn::Mask<F> find_turned_away(const PackedNormal* normals, V x, V y, V z, V w,
+                                        float longest) {
+  const F f;
+  const hn::RebindToSigned<F> s;
+  const hn::Rebind<PackedNormal, F> halves;
+  // As in unpack_normal().
+  const auto packed = hn::PromoteTo(s, hn::LoadU(halves, normals));
+  const auto side = [&](auto v)
+                        HWY_ATTR { return hn::Sub(hn::ConvertTo(f, v), hn::Set(f, 128.0F)); };
+  const auto nx = side(hn::And(packed, hn::Set(s, 255))), ny = side(hn::ShiftRight<8>(packed));
+  const auto nz = hn::Sub(hn::Sub(hn::Set(f, kNormalSteps), hn::Abs(nx)), hn::Abs(ny));
+  const auto fold = hn::Max(hn::Neg(nz), hn::Zero(f));
+  const auto along = hn::MulAdd(hn::Sub(nx, hn::CopySign(fold, nx)), x,
+                                hn::MulAdd(hn::Sub(ny, hn::CopySign(fold, ny)), y, hn::Mul(nz, z)));
+  const auto error = hn::Mul(hn::Set(f, kNormalError * kNormalSteps * longest), w);
+  return hn::And(hn::Gt(along, error), hn::RebindMask(f, hn::Ne(packed, hn::Zero(s))));
+}
 
 // Pixels are told apart by their number in the picture. Returns how many points there are.
 std::size_t project_block(const FloatView& view, const BlockPoints& block, RowBand band,
@@ -89,6 +111,8 @@ std::size_t project_block(const FloatView& view, const BlockPoints& block, RowBa
                         hn::RebindMask(f, hn::Lt(number, all))),
                 hn::And(hn::And(hn::Ge(py, top), hn::Lt(py, bottom)), hn::Gt(w, least)));
     if (hn::AllFalse(f, inside)) continue;
+    const auto shown = hn::AndNot(
+        find_turned_away<decltype(f)>(block.normals + i, x, y, z, w, view.longest), inside);
     // In quarters of pixels; what is outside is anything.
     const auto qx = hn::ConvertTo(s, hn::Mul(hn::Min(hn::Max(px, zero), width), four));
     const auto qy = hn::ConvertTo(s, hn::Mul(hn::Min(hn::Max(py, top), bottom), four));
@@ -98,11 +122,11 @@ std::size_t project_block(const FloatView& view, const BlockPoints& block, RowBa
         hn::Or(hn::ShiftLeft<4>(hn::Add(number, hn::Set(u, block.first))), hn::BitCast(u, cell));
     const auto depth = block.is_far ? far : hn::BitCast(u, w);
     // Compressed in a register: storing while compressing is slow on some processors.
-    const auto in = hn::RebindMask(u, inside);
+    const auto in = hn::RebindMask(u, shown);
     hn::StoreU(hn::Compress(hn::BitCast(u, pixel), in), u, out.pixel.data() + found);
     hn::StoreU(hn::Compress(place, in), u, out.place.data() + found);
     hn::StoreU(hn::Compress(depth, in), u, out.depth_bits.data() + found);
-    found += hn::CountTrue(f, inside);
+    found += hn::CountTrue(f, shown);
   }
   return found;
 }
@@ -122,8 +146,15 @@ FloatView make_float_view(const PixelView& view) {
   const auto floats = [](Vec3d v) {
     return std::array<float, 3>{float(v.x), float(v.y), float(v.z)};
   };
-  return {floats(m.x),      floats(m.y),          floats(m.z),
-          floats(view.eye), float(view.width_px), float(view.height_px)};
+  const Mat3d rays = inverse(view.pixel_from_world);
+  double longest = 0;
+  for (const double x : {0, view.width_px}) {
+    for (const double y : {0, view.height_px}) {
+      longest = std::max(longest, length(rays * Vec3d{x, y, 1}));
+    }
+  }
+  return {floats(m.x),          floats(m.y),           floats(m.z),   floats(view.eye),
+          float(view.width_px), float(view.height_px), float(longest)};
 }
 
 RowBand rows_of(const PixelView& view, const PointBlock& block) {
@@ -177,8 +208,9 @@ void project_points(const PixelView& view, const PointCache& cache,
     if (block_rows[b].first >= band.last || block_rows[b].last <= band.first) continue;
     const PointBlock& block = cache.blocks()[b];
     const std::uint32_t first = b * kPointBlock;
-    const BlockPoints places{cache.x() + first, cache.y() + first, cache.z() + first, first,
-                             block.count,       block.is_far};
+    const BlockPoints places{
+        cache.x() + first, cache.y() + first, cache.z() + first, cache.normals() + first, first,
+        block.count,       block.is_far};
     const std::size_t count = HWY_DYNAMIC_DISPATCH(project_block)(floats, places, band, found);
     for (std::size_t i = 0; i < count; ++i) {
       PointKey& nearest = points[found.pixel[i]];

@@ -1,7 +1,8 @@
 // point_raster.h — cached points onto the pixels of a new view
 // What       projects the points of the cache and keeps the nearest of each pixel, with the quarter of the pixel
-//            that it lies in
+//            that it lies in; but for points of surfaces that are seen from the other side now
 // Guarantee  the same points at any number of bands: the nearest wins, of equal ones the lower number
+// Limits     a surface that is seen at less than a degree or two shows the points of both its sides
 // Cost       linear in the points; a block outside of a band costs its eight corners
 // Source     Bala, Walter, Greenberg (2003), §4.3
 #pragma once

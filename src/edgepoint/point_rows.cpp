@@ -18,8 +18,8 @@
 #define ARRIS_EDGEPOINT_POINT_ROWS_ONCE
 namespace arris {
 
-// Frames after which a point gets no older.
-inline constexpr std::uint32_t kOld = 254;
+// A point gets no older than that, in kFramesOfAge.
+inline constexpr std::uint32_t kOld = 15;
 
 }  // namespace arris
 #endif
@@ -91,8 +91,8 @@ void unpack(std::span<const PointKey> row, const PointLook* looks, std::uint32_t
     const hn::RebindToSigned<PixelLanes> s;
     const hn::Rebind<std::uint8_t, PixelLanes> bytes;
     const auto some = hn::Ne(high, hn::Set(u, kNone));
-    Integers packed, born;
-    hn::LoadInterleaved2(u, reinterpret_cast<const std::uint32_t*>(looks + x), packed, born);
+    Integers packed, rest;
+    hn::LoadInterleaved2(u, reinterpret_cast<const std::uint32_t*>(looks + x), packed, rest);
     packed = hn::IfThenElseZero(some, packed);
     const auto nine = hn::Set(u, 511);
     // 2^(exponent − bias − bits), made from its bits, as in unpack_radiance().
@@ -105,10 +105,12 @@ void unpack(std::span<const PointKey> row, const PointLook* looks, std::uint32_t
     hn::StoreU(channel(packed), f, colors.r + x);
     hn::StoreU(channel(hn::ShiftRight<9>(packed)), f, colors.g + x);
     hn::StoreU(channel(hn::ShiftRight<18>(packed)), f, colors.b + x);
-    const auto age = hn::And(hn::Sub(hn::Set(u, frame), born), hn::Set(u, 0xffff));
-    const auto by_age = hn::Add(hn::ShiftRight<4>(hn::Min(age, hn::Set(u, kOld))), hn::Set(u, 1));
-    // The upper half is PointLook::stale.
-    const auto wish = hn::IfThenElseZero(some, hn::Max(by_age, hn::ShiftRight<24>(born)));
+    // PointLook::stale, a step of which is 1/256, and born.
+    const auto byte = hn::Set(u, 255);
+    const auto stale = hn::And(hn::ShiftRight<8>(rest), byte), born = hn::ShiftRight<16>(rest);
+    const auto age = hn::And(hn::Sub(hn::Set(u, frame / kFramesOfAge), born), byte);
+    const auto by_age = hn::Add(hn::Min(age, hn::Set(u, kOld)), hn::Set(u, 1));
+    const auto wish = hn::IfThenElseZero(some, hn::Max(by_age, stale));
     hn::StoreU(hn::DemoteTo(bytes, hn::BitCast(s, wish)), bytes, wishes + x);
   });
 }

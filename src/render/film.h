@@ -25,6 +25,7 @@ struct FirstHit {
   float bevel_fac = 0;   // the bevel shader's Fac; 0 without that shader
   Rgb albedo;
   Vec3f normal;              // shading normal, towards the camera; 0 without a hit
+  Vec3f geometric_normal;    // towards the camera; 0 without a hit
   float depth = 0;           // distance from the camera
   std::uint32_t object = 0;  // the object's index plus 1; 0: none
 };

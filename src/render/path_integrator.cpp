@@ -240,6 +240,7 @@ void fill_first_hit(FirstHit& first, const SurfaceHit& hit, const SurfaceMateria
   first.bevel_fac = hit.bevel_fac;
   first.albedo = material.base_color;
   first.normal = frame.normal;
+  first.geometric_normal = hit.side == Side::inside ? -hit.geometric_normal : hit.geometric_normal;
   first.depth = distance;
   first.object = hit.object.index + 1;
 }

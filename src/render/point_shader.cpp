@@ -64,6 +64,7 @@ ShadedPoint shade_point(const PreparedScene& scene, const CameraRays& camera,
   ShadedPoint point;
   point.radiance = sum * (1 / float(shader.paths));
   point.position = hit.hit ? ray.origin + ray.direction * hit.depth : ray.direction;
+  point.normal = hit.geometric_normal;
   point.object = hit.hit ? hit.object - 1 : kFarObject;
   return point;
 }

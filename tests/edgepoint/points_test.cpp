@@ -84,10 +84,10 @@ TEST(PointCache, replaces_points_where_they_are_and_makes_room_when_full) {
   ShadedPoint point = random_points(random, 2)[1];
   point.replaces = 3;
   point.object = cache.blocks()[0].is_far ? kFarObject : 1;
-  cache.add({&point, 1}, 40);
+  cache.add({&point, 1}, 2 * kFramesOfAge + 8);
   EXPECT_EQ(cache.size(), full);
   EXPECT_EQ(cache.x()[3], point.position.x);
-  EXPECT_EQ(cache.looks()[3].born, 40);
+  EXPECT_EQ(cache.looks()[3].born, 2);
 }
 
 TEST(PointCache, moves_the_points_of_an_object_only) {
@@ -113,6 +113,105 @@ TEST(PointCache, moves_the_points_of_an_object_only) {
   }
   EXPECT_EQ(count, std::count_if(points.begin(), points.end(),
                                  [](const ShadedPoint& p) { return p.object == 1; }));
+}
+
+TEST(PointCache, objects_have_numbers_of_24_bits) {
+  std::vector<ShadedPoint> points;
+  for (const std::uint32_t object : {0U, 0xffffU, 0x10000U, 0xabcdefU, kFarObject - 1}) {
+    points.push_back({{1, 2, 3}, Rgb(1), {}, object, kNoPoint});
+  }
+  PointCache cache(points.size());
+  cache.add(points, 0);
+  for (std::uint32_t i = 0; i < points.size(); ++i) EXPECT_EQ(cache.objects()[i], points[i].object);
+}
+
+TEST(PointCache, points_that_turn_are_seen_from_all_sides) {
+  ShadedPoint point;
+  point.object = 0;
+  point.normal = {0, 0, 1};
+  for (const bool turns : {false, true}) {
+    PointCache cache(1);
+    cache.add({&point, 1}, 0);
+    std::vector<std::optional<Affine3d>> to_from(1);
+    to_from[0] = Affine3d{{}, {1, 2, 3}};
+    if (turns) to_from[0]->linear = {{0.8, 0.6, 0}, {-0.6, 0.8, 0}, {0, 0, 1}};
+    cache.move(to_from);
+    EXPECT_EQ(cache.normals()[0] == kNoNormal, turns);
+  }
+}
+
+Vec3f random_direction(std::mt19937& random) {
+  std::normal_distribution<float> normal;
+  Vec3f v;
+  v.x = normal(random);
+  v.y = normal(random);
+  v.z = normal(random);
+  return normalize(v);
+}
+
+TEST(PackedNormal, is_off_by_its_error_at_most_and_exact_along_axes) {
+  std::mt19937 random(14);
+  float worst = 0;
+  for (int i = 0; i < 200'000; ++i) {
+    const Vec3f n = random_direction(random), back = unpack_normal(pack_normal(n));
+    worst = std::max(worst, length(cross(n, back)) / length(back));
+    ASSERT_GT(dot(n, back), 0) << i;
+    ASSERT_LE(length(back), kNormalSteps * 1.0001F);
+    ASSERT_NE(pack_normal(n), kNoNormal);
+  }
+  EXPECT_LE(worst, kNormalError);
+  EXPECT_GT(worst, 0.7F * kNormalError);
+  for (const Vec3f axis : {Vec3f{1, 0, 0}, Vec3f{0, 1, 0}, Vec3f{0, 0, 1}}) {
+    EXPECT_EQ(unpack_normal(pack_normal(axis)), axis * kNormalSteps);
+    EXPECT_EQ(unpack_normal(pack_normal(-axis)), axis * -kNormalSteps);
+  }
+  EXPECT_EQ(pack_normal({}), kNoNormal);
+}
+
+TEST(PointRaster, leaves_out_points_of_the_side_that_is_not_seen) {
+  std::mt19937 random(15);
+  const PixelView view = make_view();
+  std::vector<ShadedPoint> given = random_points(random, 6000);
+  for (std::size_t i = 0; i < given.size(); ++i) {
+    if (i % 4 != 0) given[i].normal = random_direction(random);
+  }
+  PointCache cache(8000), facing(8000);
+  cache.add(given, 0);
+  // How far they are turned away, as a sine; far points never are.
+  const auto turned = [&](const ShadedPoint& p) {
+    if (p.object == kFarObject) return -1.0;
+    const Vec3d to = Vec3d(p.position) - view.eye;
+    return dot(Vec3d(p.normal), to) / length(to);
+  };
+  std::erase_if(given, [&](const ShadedPoint& p) { return turned(p) > 0; });
+  facing.add(given, 0);
+  const auto depths = [&](const PointCache& points) {
+    std::vector<PointKey> keys(std::size_t(kWidth) * kHeight);
+    const std::vector<RowBand> rows = find_block_rows(view, points, 1);
+    std::vector<std::uint32_t> seen(rows.size() + 1);
+    project_points(view, points, rows, {0, kHeight}, keys, seen);
+    return keys;
+  };
+  const std::vector<PointKey> all = depths(cache), wanted = depths(facing);
+  int same = 0, grazing = 0;
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    if (all[i].is_none() && wanted[i].is_none()) continue;
+    ASSERT_FALSE(all[i].is_none());
+    if (!wanted[i].is_none() && all[i].depth() == wanted[i].depth()) {
+      ++same;
+      continue;
+    }
+    // Only what is seen along its surface may be there besides.
+    ++grazing;
+    const PointNumber number = all[i].point();
+    ShadedPoint shown;
+    shown.object = 0;
+    shown.position = {cache.x()[number], cache.y()[number], cache.z()[number]};
+    shown.normal = normalize(unpack_normal(cache.normals()[number]));
+    ASSERT_LT(turned(shown), 4 * kNormalError);
+  }
+  EXPECT_GT(same, 500);
+  EXPECT_LT(grazing, same / 20);
 }
 
 TEST(PointRaster, keeps_the_nearest_point_of_each_pixel) {
@@ -188,12 +287,16 @@ EdgePointImage image_of_depths(const std::vector<float>& depths,
 std::vector<std::uint32_t> hidden_in(const EdgePointImage& image, float pixel_size,
                                      std::vector<std::uint32_t> objects = {}) {
   objects.resize(image.points.size());
+  std::vector<ShadedPoint> points(objects.size());
+  for (std::size_t i = 0; i < points.size(); ++i) points[i].object = objects[i];
+  PointCache cache(points.size());
+  cache.add(points, 0);
   DepthCells cells(kWidth, kHeight);
   for (int i = 0; i < cells.cell_rows(); ++i) cells.fill_cells(image.points, i);
   for (int i = 0; i < cells.limit_rows(); ++i) cells.fill_limits(i, pixel_size);
   std::vector<std::uint32_t> hidden;
   for (const RowBand band : {RowBand{0, 20}, RowBand{20, kHeight}}) {
-    const auto part = find_hidden_points(image, objects, cells, band, pixel_size);
+    const auto part = find_hidden_points(image, cache.objects(), cells, band, pixel_size);
     hidden.insert(hidden.end(), part.begin(), part.end());
   }
   return hidden;

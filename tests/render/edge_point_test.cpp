@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
@@ -243,6 +244,31 @@ TEST(EdgePoint, smooth_meshes_show_outlines_only) {
   with.next_frame();
   EXPECT_EQ(with.stats().edges.sharp, without.stats().edges.sharp);
   EXPECT_GT(with.stats().edges.silhouette, without.stats().edges.silhouette + 20);
+}
+
+// A sheet that is lit from above; seen from above, and then from below.
+TEST(EdgePoint, light_of_one_side_is_not_seen_from_the_other) {
+  Camera camera;
+  camera.position = {0.4, -3, 2};
+  camera.target = {0, 0, 0};
+  camera.fov_deg = 40;
+  Scene described = make_empty_scene(camera);
+  described.image.width_px = described.image.height_px = 64;
+  add_object(described, make_square_mesh(6), make_lambert(0.8F));
+  described.lights.push_back(PointLight{{0, 0, 4}, Rgb(60)});
+  const auto scene = prepare_scene(described);
+  EdgePointEngine engine(scene, synchronous());
+  const Image& above = engine.next_frame();
+  EXPECT_GT(above.values[above.offset(32, 32)], 0.3F);
+  camera.position.z = -2;
+  engine.set_camera(camera);
+  const Image& below = engine.next_frame();
+  EXPECT_EQ(*std::max_element(below.values.begin(), below.values.end()), 0);
+  // What was seen from above is kept.
+  for (int i = 0; i < 4; ++i) engine.next_frame();
+  camera.position.z = 2;
+  engine.set_camera(camera);
+  EXPECT_GT(engine.next_frame().values[above.offset(32, 32)], 0.3F);
 }
 
 TEST(EdgePoint, a_light_that_is_not_there_is_an_error) {
