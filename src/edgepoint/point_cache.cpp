@@ -21,10 +21,12 @@ bool turns(const Mat3d& m) {
 
 }  // namespace
 
-std::uint32_t pack_radiance(Rgb radiance) {
+std::uint32_t pack_radiance(Rgb radiance, int stops) {
   static constexpr float kMost = 65408;  // (1 − 2⁻⁹) 2¹⁶
   const auto clamped = [](float v) { return v > 0 ? std::min(v, kMost) : 0.0F; };
-  const Rgb c{clamped(radiance.x), clamped(radiance.y), clamped(radiance.z)};
+  const float exposed = std::ldexp(1.0F, stops);
+  const Rgb c{clamped(radiance.x * exposed), clamped(radiance.y * exposed),
+              clamped(radiance.z * exposed)};
   const float largest = max_component(c);
   if (!(largest > 0)) return 0;
   int exponent = std::max(-kRadianceBias - 1, std::ilogb(largest)) + 1 + kRadianceBias;
@@ -38,8 +40,8 @@ std::uint32_t pack_radiance(Rgb radiance) {
          std::uint32_t(std::min(exponent, kMostExponent)) << 27U;
 }
 
-PointCache::PointCache(std::size_t capacity)
-    : most_blocks_((capacity + kPointBlock - 1) / kPointBlock + 2) {
+PointCache::PointCache(std::size_t capacity, int stops)
+    : most_blocks_((capacity + kPointBlock - 1) / kPointBlock + 2), stops_(stops) {
   ARRIS_CHECK(most_blocks_ <= kMostPoints / kPointBlock, double(capacity));
   open_.fill(kNoBlock);
   const std::size_t places = most_blocks_ * kPointBlock;
@@ -81,7 +83,7 @@ void PointCache::put(PointBlock& block, PointNumber number, const ShadedPoint& p
   y_[number] = point.position.y;
   z_[number] = point.position.z;
   ARRIS_CHECK(point.object <= kFarObject, double(point.object));
-  looks_[number] = {pack_radiance(point.radiance), 0, std::uint8_t(frame / kFramesOfAge),
+  looks_[number] = {pack_radiance(point.radiance, stops_), 0, std::uint8_t(frame / kFramesOfAge),
                     std::uint8_t(point.object >> 16U)};
   lower_object_[number] = std::uint16_t(point.object);
   normal_[number] = block.is_far ? kNoNormal : pack_normal(point.normal);

@@ -40,13 +40,16 @@ struct ShadedPoint {
   PointNumber replaces = kNoPoint;  // the point that was seen where this was asked for
 };
 
-// Shared exponent, nine bits a channel: 0 to 65408, a step of 1/512 of the largest channel's power of two.
-std::uint32_t pack_radiance(Rgb radiance);
+// Shared exponent, nine bits a channel: 0 to 65408, a step of 1/512 of the largest channel's power of two, or of 2⁻¹⁵;
+// all of it times 2^−stops, so that the range is what an exposure of so many stops shows. |stops| ≤ 64.
+std::uint32_t pack_radiance(Rgb radiance, int stops = 0);
 inline constexpr int kRadianceBits = 9, kRadianceBias = 15;
-inline Rgb unpack_radiance(std::uint32_t packed) {
-  // 2^(exponent − bias − bits), made from its bits.
-  const float scale =
-      std::bit_cast<float>(((packed >> 27U) + 127U - kRadianceBias - kRadianceBits) << 23U);
+// Bits of a float's exponent: of 2^(− bias − bits − stops).
+inline std::uint32_t radiance_exponent(int stops) {
+  return std::uint32_t(127 - kRadianceBias - kRadianceBits - stops);
+}
+inline Rgb unpack_radiance(std::uint32_t packed, int stops = 0) {
+  const float scale = std::bit_cast<float>(((packed >> 27U) + radiance_exponent(stops)) << 23U);
   return Rgb{float(packed & 511U), float(packed >> 9U & 511U), float(packed >> 18U & 511U)} * scale;
 }
 
@@ -100,8 +103,8 @@ inline constexpr Staleness kMovedStale{160, 224};
 
 class PointCache {
  public:
-  // Of at least so many points; at most kMostPoints.
-  explicit PointCache(std::size_t capacity);
+  // Of at least so many points; at most kMostPoints. stops: pack_radiance()'s.
+  explicit PointCache(std::size_t capacity, int stops = 0);
 
   // Takes the points of one frame in, those that replace others into their places.
   void add(std::span<const ShadedPoint> points, std::uint32_t frame);
@@ -121,6 +124,7 @@ class PointCache {
   [[nodiscard]] const float* z() const { return z_.data(); }
   [[nodiscard]] const PackedNormal* normals() const { return normal_.data(); }
   [[nodiscard]] std::span<const PointLook> looks() const { return looks_; }
+  [[nodiscard]] int stops() const { return stops_; }
   [[nodiscard]] PointObjects objects() const { return {lower_object_, looks_}; }
 
   // How many points of each block were seen.
@@ -141,6 +145,7 @@ class PointCache {
   }
 
   std::size_t most_blocks_;
+  int stops_;
   std::vector<PointBlock> blocks_;
   std::vector<float> x_, y_, z_;
   std::vector<PackedNormal> normal_;

@@ -21,6 +21,12 @@ namespace arris {
 // A point gets no older than that, in kFramesOfAge.
 inline constexpr std::uint32_t kOld = 15;
 
+// What looks are read against.
+struct LookReading {
+  std::uint32_t frame;
+  std::uint32_t exponent;  // radiance_exponent()
+};
+
 }  // namespace arris
 #endif
 
@@ -83,7 +89,7 @@ void widen(std::span<const PointKey> row, const DepthColumns& columns) {
 }
 
 // looks: of each pixel's point, or anything.
-void unpack(std::span<const PointKey> row, const PointLook* looks, std::uint32_t frame,
+void unpack(std::span<const PointKey> row, const PointLook* looks, LookReading reading,
             ColorRow colors, std::uint8_t* wishes) {
   for_keys(row, [&](std::size_t x, Integers /*low*/, Integers high) HWY_ATTR {
     const Unsigned u;
@@ -95,9 +101,8 @@ void unpack(std::span<const PointKey> row, const PointLook* looks, std::uint32_t
     hn::LoadInterleaved2(u, reinterpret_cast<const std::uint32_t*>(looks + x), packed, rest);
     packed = hn::IfThenElseZero(some, packed);
     const auto nine = hn::Set(u, 511);
-    // 2^(exponent − bias − bits), made from its bits, as in unpack_radiance().
-    const auto exponent = hn::Add(hn::ShiftRight<27>(packed),
-                                  hn::Set(u, std::uint32_t(127 - kRadianceBias - kRadianceBits)));
+    // As in unpack_radiance().
+    const auto exponent = hn::Add(hn::ShiftRight<27>(packed), hn::Set(u, reading.exponent));
     const auto scale = hn::BitCast(f, hn::ShiftLeft<23>(exponent));
     const auto channel = [&](Integers v) HWY_ATTR {
       return hn::Mul(hn::ConvertTo(f, hn::BitCast(s, hn::And(v, nine))), scale);
@@ -108,7 +113,7 @@ void unpack(std::span<const PointKey> row, const PointLook* looks, std::uint32_t
     // PointLook::stale, a step of which is 1/256, and born.
     const auto byte = hn::Set(u, 255);
     const auto stale = hn::And(hn::ShiftRight<8>(rest), byte), born = hn::ShiftRight<16>(rest);
-    const auto age = hn::And(hn::Sub(hn::Set(u, frame / kFramesOfAge), born), byte);
+    const auto age = hn::And(hn::Sub(hn::Set(u, reading.frame / kFramesOfAge), born), byte);
     const auto by_age = hn::Add(hn::Min(age, hn::Set(u, kOld)), hn::Set(u, 1));
     const auto wish = hn::IfThenElseZero(some, hn::Max(by_age, stale));
     hn::StoreU(hn::DemoteTo(bytes, hn::BitCast(s, wish)), bytes, wishes + x);
@@ -178,7 +183,8 @@ void fetch_points(std::span<const PointKey> row, std::span<const PointKey> next,
   const auto look_of = [&](PointKey key) { return all.data() + std::min(key.point(), last); };
   for (const PointKey key : next) hwy::Prefetch(look_of(key));
   for (std::size_t x = 0; x < row.size(); ++x) looks[x] = *look_of(row[x]);
-  HWY_DYNAMIC_DISPATCH(unpack)(row, looks.data(), frame, colors, wishes);
+  const LookReading reading{frame, radiance_exponent(cache.stops())};
+  HWY_DYNAMIC_DISPATCH(unpack)(row, looks.data(), reading, colors, wishes);
 }
 
 void find_wanted(std::span<std::uint8_t> wanted, const float* weight, const std::uint8_t* wishes,

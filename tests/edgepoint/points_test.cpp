@@ -72,6 +72,14 @@ TEST(PointCache, radiance_keeps_nine_bits_of_its_largest_channel) {
   EXPECT_EQ(unpack_radiance(pack_radiance({})), Rgb());
   EXPECT_EQ(unpack_radiance(pack_radiance({-1, NAN, 0})), Rgb());
   EXPECT_EQ(max_component(unpack_radiance(pack_radiance(Rgb(1e9F)))), 65408);
+  // With an exposure the range is that which it shows.
+  for (const int stops : {-64, -7, 20, 64}) {
+    const float unit_of_it = std::ldexp(1.0F, -stops);
+    EXPECT_EQ(unpack_radiance(pack_radiance(Rgb(0.75F) * unit_of_it, stops), stops),
+              Rgb(0.75F) * unit_of_it);
+    EXPECT_EQ(max_component(unpack_radiance(pack_radiance(Rgb(1e9F) * unit_of_it, stops), stops)),
+              65408 * unit_of_it);
+  }
 }
 
 TEST(PointCache, replaces_points_where_they_are_and_makes_room_when_full) {

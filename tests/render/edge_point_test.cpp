@@ -443,6 +443,29 @@ TEST(EdgePoint, a_still_view_of_a_texture_converges_to_the_path_traced_picture) 
   EXPECT_LT(rmse(*picture, reference), 1.5 * rmse(path_picture(scene, 256), reference));
 }
 
+// Whatever the unit of light is: scenes that an exposure makes the same.
+TEST(EdgePoint, lights_of_any_power_make_the_same_picture_by_their_exposure) {
+  const auto pictures_at = [](int stops) {
+    const float power = std::ldexp(1.0F, stops);
+    Scene described = make_checkered_scene(48);
+    described.image.exposure = -stops;
+    described.environment = ConstantEnvironment{Rgb(0.15F * power)};
+    described.lights[0] = PointLight{{2.5, -3, 5}, Rgb(60 * power)};
+    EdgePointEngine engine(prepare_scene(described), synchronous());
+    Camera camera = *described.camera;
+    std::vector<float> values;
+    for (int i = 0; i < 4; ++i) {
+      if (i < 3) camera.position.x += 0.05;
+      engine.set_camera(camera);
+      for (const float v : engine.next_frame().values) values.push_back(v / power);
+    }
+    return values;
+  };
+  const std::vector<float> expected = pictures_at(0);
+  EXPECT_GT(*std::max_element(expected.begin(), expected.end()), 0.3F);
+  for (const int stops : {-40, -17, 17, 40}) EXPECT_EQ(pictures_at(stops), expected) << stops;
+}
+
 TEST(EdgePoint, cheap_frames_are_traced) {
   const auto scene = prepare_scene(make_scene(40));
   EdgePointSettings settings = synchronous();
