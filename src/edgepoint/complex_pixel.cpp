@@ -163,7 +163,9 @@ class Builder {
 
   void set_sample(int bit, int px, int py) {
     Rgb color = color_at(colors_.samples.row(py), px);
-    if (colors_.tints != nullptr) color *= colors_.tints->at(px, py);
+    if (colors_.tints != nullptr) {
+      color = tinted(color, color_at(colors_.painted->row(py), px), colors_.tints->at(px, py));
+    }
     set_color(bit, color, 1);
   }
   // As interpolated.

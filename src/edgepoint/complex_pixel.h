@@ -20,6 +20,7 @@ struct ComplexPixelColors {
   ColorRows& samples;
   PrimaryNeighborhood around;        // tinted
   const TintImage* tints = nullptr;  // of pixels, whose samples have the same; null: none
+  ColorRows* painted = nullptr;      // of the samples, what tints multiply; where there are tints
   Rgb fallback;                      // the pixel's colour with all samples taken as reachable
 };
 Rgb reconstruct_complex_pixel(const EdgePointImage& image, int x, int y,

@@ -40,7 +40,7 @@ std::uint32_t pack_radiance(Rgb radiance, int stops) {
          std::uint32_t(std::min(exponent, kMostExponent)) << 27U;
 }
 
-PointCache::PointCache(std::size_t capacity, int stops)
+PointCache::PointCache(std::size_t capacity, int stops, bool keeps_painted)
     : most_blocks_((capacity + kPointBlock - 1) / kPointBlock + 2), stops_(stops) {
   ARRIS_CHECK(most_blocks_ <= kMostPoints / kPointBlock, double(capacity));
   open_.fill(kNoBlock);
@@ -51,6 +51,7 @@ PointCache::PointCache(std::size_t capacity, int stops)
   looks_.resize(places);
   normal_.resize(places);
   lower_object_.resize(places);
+  if (keeps_painted) painted_.resize(places);
 }
 
 std::size_t PointCache::room_for(bool far, std::uint32_t frame) {
@@ -86,6 +87,9 @@ void PointCache::put(PointBlock& block, PointNumber number, const ShadedPoint& p
   looks_[number] = {pack_radiance(point.radiance, stops_), 0, std::uint8_t(frame / kFramesOfAge),
                     std::uint8_t(point.object >> 16U)};
   lower_object_[number] = std::uint16_t(point.object);
+  if (!painted_.empty()) {
+    painted_[number] = std::uint8_t(std::lround(255 * std::clamp(point.painted, 0.0F, 1.0F)));
+  }
   normal_[number] = block.is_far ? kNoNormal : pack_normal(point.normal);
   const bool is_only = block.count == 1;
   block.lower = is_only ? point.position : min(block.lower, point.position);
@@ -148,7 +152,7 @@ std::size_t PointCache::size() const {
 std::size_t PointCache::bytes() const {
   return x_.size() * (3 * sizeof(float) + sizeof(PackedNormal) + sizeof(PointLook) +
                       sizeof(std::uint16_t)) +
-         blocks_.size() * sizeof(PointBlock);
+         painted_.size() + blocks_.size() * sizeof(PointBlock);
 }
 
 }  // namespace arris

@@ -34,7 +34,8 @@ inline constexpr PointNumber kNoPoint = ~PointNumber{0};
 struct ShadedPoint {
   Vec3f position;  // in the world; of far points: the direction, unit
   Rgb radiance;
-  Vec3f normal;  // of the surface, on the side that was seen; 0: of all sides
+  float painted = 0;  // the part of it, 0 to 1, that goes with the base colour (tint_image.h)
+  Vec3f normal;       // of the surface, on the side that was seen; 0: of all sides
   std::uint32_t object =
       kFarObject;  // the shader's number, at most kFarObject, which says that: the ray left the scene
   PointNumber replaces = kNoPoint;  // the point that was seen where this was asked for
@@ -103,8 +104,9 @@ inline constexpr Staleness kMovedStale{160, 224};
 
 class PointCache {
  public:
-  // Of at least so many points; at most kMostPoints. stops: pack_radiance()'s.
-  explicit PointCache(std::size_t capacity, int stops = 0);
+  // Of at least so many points; at most kMostPoints. stops: pack_radiance()'s. keeps_painted: a byte more a point, for
+  // ShadedPoint::painted.
+  explicit PointCache(std::size_t capacity, int stops = 0, bool keeps_painted = false);
 
   // Takes the points of one frame in, those that replace others into their places.
   void add(std::span<const ShadedPoint> points, std::uint32_t frame);
@@ -124,6 +126,8 @@ class PointCache {
   [[nodiscard]] const float* z() const { return z_.data(); }
   [[nodiscard]] const PackedNormal* normals() const { return normal_.data(); }
   [[nodiscard]] std::span<const PointLook> looks() const { return looks_; }
+  // In 255ths; empty unless asked for.
+  [[nodiscard]] std::span<const std::uint8_t> painted() const { return painted_; }
   [[nodiscard]] int stops() const { return stops_; }
   [[nodiscard]] PointObjects objects() const { return {lower_object_, looks_}; }
 
@@ -149,6 +153,7 @@ class PointCache {
   std::vector<PointBlock> blocks_;
   std::vector<float> x_, y_, z_;
   std::vector<PackedNormal> normal_;
+  std::vector<std::uint8_t> painted_;
   std::vector<PointLook> looks_;
   std::vector<std::uint16_t> lower_object_;
   std::array<std::size_t, 2> open_{};  // the block being filled: of near points, and of far ones

@@ -35,7 +35,9 @@ class BandMaker {
         primary_(kPrimaryRows, width_),
         weights_(std::size_t(kPrimaryRows) * weight_stride()),
         wishes_(std::size_t(kSampleRows) * weight_stride()),
-        looks_(weight_stride()) {}
+        looks_(weight_stride()),
+        painted_samples_(settings.tints != nullptr ? kSampleRows : 0, width_),
+        painted_(settings.tints != nullptr ? 1 : 0, width_) {}
 
   BandReport run() {
     const int first = std::max(band_.first - 1, 0),
@@ -71,17 +73,38 @@ class BandMaker {
     };
     fetch_points(row_at(y), row_at(std::min(y + 1, image_.height_px - 1)), cache_, settings_.frame,
                  looks_, samples_.row(y), wish_row(y));
+    if (settings_.tints != nullptr) fetch_painted(y);
   }
 
-  void tint_row(const ColorRow& row, int y) const {
+  void fetch_painted(int y) {
+    const ColorRow from = samples_.row(y), to = painted_samples_.row(y);
+    const PointKey* const points = image_.points.data() + image_.offset(0, y);
+    for (int x = 0; x < width_; ++x) {
+      const float part =
+          points[x].is_none() ? 0.0F : float(cache_.painted()[points[x].point()]) * (1.0F / 255);
+      to.r[x] = from.r[x] * part;
+      to.g[x] = from.g[x] * part;
+      to.b[x] = from.b[x] * part;
+    }
+  }
+
+  void tint_row(const ColorRow& row, int y) {
     const TintImage& tints = *settings_.tints;
+    const std::uint64_t* const is_tinted = tints.is_tinted.row(y);
+    if (std::all_of(is_tinted, is_tinted + tints.is_tinted.words(),
+                    [](auto w) { return w == 0; })) {
+      return;
+    }
+    const ColorRow painted = painted_.row(0);
+    interpolate_row(image_, y, painted_samples_, painted, painted_weights_.data());
     for (int word = 0; word < tints.is_tinted.words(); ++word) {
       for (std::uint64_t bits = tints.is_tinted.row(y)[word]; bits != 0; bits &= bits - 1) {
         const int x = 64 * word + std::countr_zero(bits);
-        const Rgb tint = tints.values[image_.offset(x, y)];
-        row.r[x] *= tint.x;
-        row.g[x] *= tint.y;
-        row.b[x] *= tint.z;
+        const Rgb color =
+            tinted(color_at(row, x), color_at(painted, x), tints.values[image_.offset(x, y)]);
+        row.r[x] = color.x;
+        row.g[x] = color.y;
+        row.b[x] = color.z;
       }
     }
   }
@@ -103,7 +126,8 @@ class BandMaker {
       if (settings_.complex_filter && image_.codes[image_.offset(x, y)].is_complex()) {
         const Rgb fallback{here.color.r[x], here.color.g[x], here.color.b[x]};
         set_pixel(out + 3 * x, reconstruct_complex_pixel(
-                                   image_, x, y, {samples_, rows, settings_.tints, fallback}));
+                                   image_, x, y,
+                                   {samples_, rows, settings_.tints, &painted_samples_, fallback}));
       }
     });
     report_.times.complex += lap();
@@ -154,6 +178,8 @@ class BandMaker {
   std::vector<float> weights_;
   std::vector<std::uint8_t> wishes_;
   std::vector<PointLook> looks_;
+  ColorRows painted_samples_, painted_;
+  std::vector<float> painted_weights_ = std::vector<float>(weight_stride());
   BandReport report_;
   Clock::time_point last_lap_ = Clock::now();
 };

@@ -1,6 +1,7 @@
 // tint_image.h — what a surface's texture makes of the light of each pixel
-// What       Points on textured surfaces are shaded as if their textures were white; what is interpolated between them
-//            is multiplied by the pixel's tint: what its primary region reflects over what it would reflect in white.
+// What       Points on textured surfaces are shaded as if their textures were white. Of what is interpolated between
+//            them, the part that goes with the base colour (ShadedPoint::painted) is multiplied by the pixel's tint:
+//            its texture in its primary region, averaged over the pixel's filter.
 // Cost       12 bytes and a bit a pixel
 #pragma once
 
@@ -11,6 +12,11 @@
 #include "edgepoint/bit_plane.h"
 
 namespace arris {
+
+// light: with white textures; painted: the part of it that goes with the base colour.
+inline Rgb tinted(Rgb light, Rgb painted, Rgb tint) {
+  return light + painted * (tint - Rgb(1));
+}
 
 struct TintImage {
   BitPlane is_tinted;       // tints elsewhere mean nothing: nothing is multiplied

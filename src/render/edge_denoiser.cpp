@@ -69,18 +69,16 @@ class EdgePicture {
                          inverse(Mat3d{camera_.step_x, camera_.step_y, camera_.corner}),
                          image_.width_px, image_.height_px};
     const EdgeObjects objects(scene, settings.threads);
-    EdgeTotals totals;
-    const std::vector<std::vector<WorldEdge>> found =
-        objects.find_edges(scene, view, settings.threads, totals);
-    const std::vector<std::span<const WorldEdge>> edges(found.begin(), found.end());
+    FoundEdges edges;
+    objects.find_edges(scene, view, settings.threads, edges);
     ShadowFinder shadows;
     std::vector<ShadowTriple> triples;
     PointCache cache = look(triples);
     shadows.add(triples);
     shadows.update(scene, objects, kMostEvents);
     Image unused(image_.width_px, image_.height_px, 3);
-    maker_.make(view, {edges, shadows.edges()}, cache, {0, false, settings.threads, {}, false},
-                unused);
+    maker_.make(view, {edges.lists(), *shadows.edges()}, cache,
+                {0, false, settings.threads, {}, false}, unused);
   }
 
   [[nodiscard]] const EdgePointImage& image() const { return maker_.image(); }
@@ -231,7 +229,7 @@ class Denoiser {
   void see_surfaces() {
     albedos_.resize(image().codes.size());
     normals_.resize(albedos_.size());
-    const PixelFilter square(ImageSettings::Filter::box);
+    const PixelLooks square(scene_.scene(), ImageSettings::Filter::box, settings_.threads);
     parallel_for(std::size_t(noisy_.height_px), {.grain = 4, .threads = settings_.threads},
                  [&](std::size_t row) {
                    const int y = int(row);

@@ -52,6 +52,7 @@ struct Path {
   // unless that was a delta lobe or the camera.
   Vec3f vertex{};
   float bsdf_pdf = 0;
+  bool bsdf_is_delta = false;
   bool light_sampled = false;
   std::uint32_t passes = 0;
   float passed_distance = 0;
@@ -199,6 +200,7 @@ bool Path::scatter(const SurfaceHit& hit, const Frame& frame, const Bsdf& bsdf, 
   }
   throughput *= sample->weight;
   bsdf_pdf = sample->pdf;
+  bsdf_is_delta = sample->is_delta;
   light_sampled = !sample->is_delta && has_emitters(lights);
   vertex = hit.position;
   kind = RayKind::scattered;
@@ -245,15 +247,40 @@ void fill_first_hit(FirstHit& first, const SurfaceHit& hit, const SurfaceMateria
   first.object = hit.object.index + 1;
 }
 
-void whiten_texture(const Material& material, SurfaceMaterial& shown) {
-  if (is_tinted(material, shown)) shown.base_color = material.base_color;
-}
+// Of light that a surface reflects, the part that goes with its base colour: a BSDF is a sum of what it would be with
+// a black one and of a multiple of the base colour.
+class PaintedShare {
+ public:
+  PaintedShare(SurfaceMaterial material, const Bsdf& bsdf, MediumSide side) : whole_(bsdf) {
+    material.base_color = Rgb(0);
+    rest_ = make_bsdf(material, bsdf.wo, side);
+  }
+
+  [[nodiscard]] Rgb towards(Vec3f wi) const {
+    return share(eval_bsdf(whole_, wi), eval_bsdf(rest_, wi));
+  }
+  // u_lobe: with which the lobe was drawn.
+  [[nodiscard]] Rgb of_delta(float u_lobe) const {
+    const bool is_coat = u_lobe >= whole_.share_diffuse + whole_.share_specular;
+    return is_coat ? Rgb(0) : share(whole_.specular_f0, rest_.specular_f0);
+  }
+
+ private:
+  static Rgb share(Rgb whole, Rgb rest) {
+    const auto of = [](float a, float b) { return a > b ? 1 - b / a : 0.0F; };
+    return {of(whole.x, rest.x), of(whole.y, rest.y), of(whole.z, rest.z)};
+  }
+
+  Bsdf whole_, rest_;
+};
 
 PathSample trace(Path& path) {
   const PreparedScene& scene = path.scene;
   const PathSettings& settings = path.settings;
   PathRays& rays = path.rays;
   PathSample result;
+  std::optional<PaintedShare> painted;
+  Rgb painted_later, radiance_before;  // of what comes from the first scattering on
   for (int depth = path.first_depth; path.passes < kMaxPasses;) {
     const bool is_known = path.known != nullptr && path.passes == 0;
     const std::optional<SurfaceHit> hit = is_known ? path.known->hit : scene.intersect(path.ray);
@@ -266,8 +293,11 @@ PathSample trace(Path& path) {
     rays.rounded += hit->rounding_seen ? 1 : 0;
     std::optional<SurfaceMaterial> storage;
     const SurfaceMaterial& material = material_at(scene, *hit, storage);
-    if (settings.white_textures && path.kind == RayKind::camera && storage) {
-      whiten_texture(scene.geometry().scene.materials[hit->material.index], *storage);
+    const bool is_painted =
+        settings.white_textures && path.kind == RayKind::camera && storage &&
+        is_tinted(scene.geometry().scene.materials[hit->material.index], *storage);
+    if (is_painted) {
+      storage->base_color = scene.geometry().scene.materials[hit->material.index].base_color;
     }
     if (path.passes_through(*hit, material.opacity)) {
       continue;
@@ -281,8 +311,9 @@ PathSample trace(Path& path) {
       break;
     }
     const Vec3f wo = local_from_world(frame, -path.ray.direction);
-    const Bsdf bsdf = make_bsdf(
-        material, wo, hit->side == Side::inside ? MediumSide::inside : MediumSide::outside);
+    const MediumSide side = hit->side == Side::inside ? MediumSide::inside : MediumSide::outside;
+    const Bsdf bsdf = make_bsdf(material, wo, side);
+    if (is_painted) painted.emplace(material, bsdf, side);
     path.sampler.set_dimension(kCameraDimensions + std::uint32_t(depth) * kDimensionsPerVertex);
     if (path.passes > 0) path.known = nullptr;  // what is behind it nobody else lights
     const std::optional<Shadow> shadow = path.sample_shadow(*hit, frame, bsdf);
@@ -297,7 +328,18 @@ PathSample trace(Path& path) {
     // Traced last: the processor overlaps the arithmetic of both samples, and then both rays.
     if (shadow) {
       ++rays.total;
-      path.radiance += shadow->arriving * scene.transmittance(shadow->ray);
+      const Rgb arrived = shadow->arriving * scene.transmittance(shadow->ray);
+      path.radiance += arrived;
+      if (is_painted) {
+        result.painted +=
+            arrived * painted->towards(local_from_world(frame, shadow->ray.direction));
+      }
+    }
+    if (is_painted && goes_on) {
+      painted_later = path.bsdf_is_delta
+                          ? painted->of_delta(u.x)
+                          : painted->towards(local_from_world(frame, path.ray.direction));
+      radiance_before = path.radiance;
     }
     if (!goes_on) {
       break;
@@ -305,6 +347,7 @@ PathSample trace(Path& path) {
     ++depth;
   }
   result.radiance = path.radiance;
+  result.painted += (path.radiance - radiance_before) * painted_later;
   return result;
 }
 

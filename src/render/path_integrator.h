@@ -40,6 +40,7 @@ struct PathRays {
 
 struct PathSample {
   Rgb radiance;
+  Rgb painted;  // white_textures: the part of it that goes with the base colour; the rest, such as glints, does not
   FirstHit first;
 };
 

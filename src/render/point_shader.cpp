@@ -52,17 +52,20 @@ ShadedPoint shade_point(const PreparedScene& scene, const CameraRays& camera,
   Sampler place(shader.seed, std::uint32_t(request.x), std::uint32_t(request.y), first);
   const Vec2f u = place.next_2d();
   const TraceRay ray = camera_ray(camera, request.x + double(u.x), request.y + double(u.y));
-  Rgb sum;
+  Rgb sum, painted;
   FirstHit hit;
   for (std::uint32_t i = 0; i < std::uint32_t(shader.paths); ++i) {
     Sampler sampler(shader.seed, std::uint32_t(request.x), std::uint32_t(request.y), first + i);
     sampler.next_2d();
     const PathSample path = trace_path(scene, settings, ray, sampler, rays);
     sum += path.radiance;
+    painted += path.painted;
     if (i == 0) hit = path.first;
   }
   ShadedPoint point;
   point.radiance = sum * (1 / float(shader.paths));
+  const float whole = sum.x + sum.y + sum.z;
+  if (whole > 0) point.painted = (painted.x + painted.y + painted.z) / whole;
   point.position = hit.hit ? ray.origin + ray.direction * hit.depth : ray.direction;
   point.normal = hit.geometric_normal;
   point.object = hit.hit ? hit.object - 1 : kFarObject;

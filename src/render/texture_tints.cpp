@@ -50,25 +50,39 @@ UvSteps find_uv_steps(const SceneGeometry& geometry, const CameraRays& camera, V
   return {step(camera.step_x), step(camera.step_y)};
 }
 
+// Texels of a step.
+float texels_of(Vec2f step, const Texture& texture) {
+  return std::max(std::fabs(step.x) * float(texture.width_px),
+                  std::fabs(step.y) * float(texture.height_px));
+}
+
 int taps_of(Vec2f step, const Texture& texture) {
-  const float texels = std::max(std::fabs(step.x) * float(texture.width_px),
-                                std::fabs(step.y) * float(texture.height_px));
+  const float texels = texels_of(step, texture);
   return int(std::clamp(std::ceil(1 + 2 * texels), 1.0F, float(kMostTaps)));
 }
 
 // The mean over the pixel filter, as if the surface went on in its plane.
 Rgb filter_base_color(const SceneGeometry& geometry, const Material& material,
-                      const PixelFilter& filter, Vec2f uv, UvSteps steps) {
-  const Texture& texture = geometry.scene.textures[material.base_color_texture->index];
+                      const PixelLooks& looks, Vec2f uv, UvSteps steps) {
+  const std::span<const Texture> textures = geometry.scene.textures;
+  const TextureId id = *material.base_color_texture;
+  const Texture& finest = textures[id.index];
+  // Texels no larger than the shorter side of the pixel: along the longer one there are more taps.
+  const Texture& texture = looks.levels.find(
+      textures, id, std::min(texels_of(steps.right, finest), texels_of(steps.down, finest)));
   const int nx = taps_of(steps.right, texture), ny = taps_of(steps.down, texture);
+  std::array<float, kMostTaps> across{};
+  for (int i = 0; i < nx; ++i) {
+    across[std::size_t(i)] = looks.filter.sample_offset((float(i) + 0.5F) / float(nx));
+  }
   Rgb sum;
   for (int j = 0; j < ny; ++j) {
-    const float y = filter.sample_offset((float(j) + 0.5F) / float(ny));
+    const float y = looks.filter.sample_offset((float(j) + 0.5F) / float(ny));
+    const Vec2f row{uv.x + steps.down.x * y, uv.y + steps.down.y * y};
     for (int i = 0; i < nx; ++i) {
-      const float x = filter.sample_offset((float(i) + 0.5F) / float(nx));
-      sum += eval_base_color(material, geometry.scene.textures,
-                             {uv.x + steps.right.x * x + steps.down.x * y,
-                              uv.y + steps.right.y * x + steps.down.y * y});
+      const float x = across[std::size_t(i)];
+      sum += eval_base_color(material, texture,
+                             {row.x + steps.right.x * x, row.y + steps.right.y * x});
     }
   }
   return sum * (1 / float(nx * ny));
@@ -161,7 +175,7 @@ Rgb albedo_of(const PreparedScene& scene, const Sight& sight, const SurfaceMater
 }  // namespace
 
 SeenSurface see_surface(const PreparedScene& scene, const CameraRays& camera,
-                        const PixelFilter& filter, Vec2f place) {
+                        const PixelLooks& looks, Vec2f place) {
   const SceneGeometry& geometry = scene.geometry();
   std::optional<Sight> sight =
       look_through(scene, camera_ray(camera, double(place.x), double(place.y)));
@@ -174,14 +188,14 @@ SeenSurface see_surface(const PreparedScene& scene, const CameraRays& camera,
   if (!reflects) return seen;
   if (is_tinted(material, sight->shown)) {
     const UvSteps steps = find_uv_steps(geometry, camera, place, sight->hit);
-    sight->shown.base_color = filter_base_color(geometry, material, filter, sight->hit.uv, steps);
+    sight->shown.base_color = filter_base_color(geometry, material, looks, sight->hit.uv, steps);
   }
   seen.albedo = albedo_of(scene, *sight, sight->shown);
   return seen;
 }
 
 std::optional<Rgb> find_tint(const PreparedScene& scene, const CameraRays& camera,
-                             const PixelFilter& filter, Vec2f place) {
+                             const PixelLooks& looks, Vec2f place) {
   const SceneGeometry& geometry = scene.geometry();
   std::optional<Sight> sight =
       look_through(scene, camera_ray(camera, double(place.x), double(place.y)));
@@ -189,16 +203,9 @@ std::optional<Rgb> find_tint(const PreparedScene& scene, const CameraRays& camer
   const Material& material = geometry.scene.materials[sight->hit.material.index];
   if (!is_tinted(material, sight->shown)) return std::nullopt;
   const UvSteps steps = find_uv_steps(geometry, camera, place, sight->hit);
-  sight->shown.base_color = filter_base_color(geometry, material, filter, sight->hit.uv, steps);
-  SurfaceMaterial plain = sight->shown;
-  plain.base_color = material.base_color;
-  if (plain.is_mix && plain.glossy_share == 0) {
-    const Rgb a = sight->shown.base_color, b = plain.base_color;
-    return Rgb{ratio(a.x, b.x), ratio(a.y, b.y), ratio(a.z, b.z)};
-  }
-  const Rgb tinted = albedo_of(scene, *sight, sight->shown),
-            white = albedo_of(scene, *sight, plain);
-  return Rgb{ratio(tinted.x, white.x), ratio(tinted.y, white.y), ratio(tinted.z, white.z)};
+  const Rgb seen = filter_base_color(geometry, material, looks, sight->hit.uv, steps);
+  const Rgb white = material.base_color;
+  return Rgb{ratio(seen.x, white.x), ratio(seen.y, white.y), ratio(seen.z, white.z)};
 }
 
 Vec2f primary_place_of(const EdgePointImage& image, int x, int y) {
@@ -206,8 +213,17 @@ Vec2f primary_place_of(const EdgePointImage& image, int x, int y) {
   return place_in(primary_place(image.codes[at], image.points[at]));
 }
 
-TextureTints::TextureTints(const Scene& scene)
-    : filter_(scene.image.filter), objects_(find_tinted_objects(scene)) {
+PixelLooks::PixelLooks(const Scene& scene, ImageSettings::Filter shape, int threads)
+    : filter(shape) {
+  std::vector<bool> wanted(scene.textures.size());
+  for (const Material& material : scene.materials) {
+    if (can_be_tinted(material)) wanted[material.base_color_texture->index] = true;
+  }
+  levels = TextureLevels(scene.textures, wanted, threads);
+}
+
+TextureTints::TextureTints(const Scene& scene, int threads)
+    : looks_(scene, scene.image.filter, threads), objects_(find_tinted_objects(scene)) {
   if (objects_.empty()) return;
   const int width = scene.image.width_px, height = scene.image.height_px;
   marked_ = BitPlane(width, height);
@@ -268,7 +284,7 @@ void TextureTints::tint_row(const PreparedScene& scene, const CameraRays& camera
       const std::uint64_t bit = std::uint64_t{1} << unsigned(i);
       tinted[word] &= ~bit;
       if (const std::optional<Rgb> tint =
-              find_tint(scene, camera, filter_, {float(x) + in.x, float(y) + in.y})) {
+              find_tint(scene, camera, looks_, {float(x) + in.x, float(y) + in.y})) {
         tints_.values[at] = *tint;
         tinted[word] |= bit;
       }

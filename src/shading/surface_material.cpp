@@ -1,78 +1,11 @@
 #include "shading/surface_material.h"
 
-#include <array>
 #include <cmath>
-#include <cstddef>
-#include <cstdint>
+
+#include "shading/texture_lookup.h"
 
 namespace arris {
 namespace {
-
-using Texel = std::array<std::uint8_t, 4>;
-using Rgba = std::array<float, 4>;
-using DecodeTable = std::array<float, 256>;
-
-DecodeTable make_decode_table(bool srgb) {
-  DecodeTable table;
-  for (std::size_t i = 0; i < table.size(); ++i) {
-    const double v = double(i) / 255.0;
-    const double decoded = v <= 0.04045 ? v / 12.92 : std::pow((v + 0.055) / 1.055, 2.4);
-    table[i] = float(srgb ? decoded : v);
-  }
-  return table;
-}
-const DecodeTable kLinearTable = make_decode_table(false);
-const DecodeTable kSrgbTable = make_decode_table(true);
-
-int wrap_index(int i, int size, Texture::Wrap wrap) {
-  switch (wrap) {
-    case Texture::Wrap::clamp:
-      return i < 0 ? 0 : i >= size ? size - 1 : i;
-    case Texture::Wrap::mirror: {
-      const int period = 2 * size;
-      const int m = ((i % period) + period) % period;
-      return m < size ? m : period - 1 - m;
-    }
-    case Texture::Wrap::repeat:
-      break;
-  }
-  return ((i % size) + size) % size;
-}
-
-// The two texels beside a coordinate, and the weight of the second.
-struct Neighbours {
-  int first, second;
-  float fraction;
-};
-Neighbours neighbours_of(float coordinate, int size, Texture::Wrap wrap) {
-  // Both wraps repeat after 2: keeps large coordinates within int and float precision.
-  const float reduced = wrap == Texture::Wrap::clamp
-                            ? std::fmin(std::fmax(coordinate, -1.0F), 2.0F)
-                            : coordinate - 2.0F * std::floor(coordinate * 0.5F);
-  const float x = (std::isfinite(reduced) ? reduced : 0.0F) * float(size) - 0.5F;
-  const float floor_x = std::floor(x);
-  const int i = int(floor_x);
-  return {wrap_index(i, size, wrap), wrap_index(i + 1, size, wrap), x - floor_x};
-}
-
-Rgba eval_texture(const Texture& texture, Vec2f uv) {
-  const Neighbours u = neighbours_of(uv.x, texture.width_px, texture.wrap_u);
-  const Neighbours v = neighbours_of(uv.y, texture.height_px, texture.wrap_v);
-  const DecodeTable& color = texture.srgb ? kSrgbTable : kLinearTable;
-  const Texel* row0 = texture.texels.data() + std::size_t(v.first) * std::size_t(texture.width_px);
-  const Texel* row1 = texture.texels.data() + std::size_t(v.second) * std::size_t(texture.width_px);
-  const float w11 = u.fraction * v.fraction;
-  const float w10 = u.fraction - w11;
-  const float w01 = v.fraction - w11;
-  const float w00 = 1.0F - u.fraction - w01;
-  Rgba result;
-  for (std::size_t c = 0; c < 4; ++c) {
-    const DecodeTable& decode = c < 3 ? color : kLinearTable;
-    result[c] = w00 * decode[row0[u.first][c]] + w10 * decode[row0[u.second][c]] +
-                w01 * decode[row1[u.first][c]] + w11 * decode[row1[u.second][c]];
-  }
-  return result;
-}
 
 Rgb rgb(const Rgba& v) {
   return {v[0], v[1], v[2]};
@@ -149,7 +82,11 @@ SurfaceMaterial eval_material(const Material& material, std::span<const Texture>
 
 Rgb eval_base_color(const Material& material, std::span<const Texture> textures, Vec2f uv) {
   if (!material.base_color_texture) return material.base_color;
-  return material.base_color * rgb(eval_texture(textures[material.base_color_texture->index], uv));
+  return eval_base_color(material, textures[material.base_color_texture->index], uv);
+}
+
+Rgb eval_base_color(const Material& material, const Texture& texture, Vec2f uv) {
+  return material.base_color * eval_texture_rgb(texture, uv);
 }
 
 bool can_be_tinted(const Material& material) {

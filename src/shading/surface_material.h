@@ -1,6 +1,6 @@
 // surface_material.h — a material at one point of a surface
-// What       eval_material() multiplies a material's factors with its textures at uv: bilinear, with
-//            glTF's channels and wrap modes, sRGB decoded texel by texel before filtering
+// What       eval_material() multiplies a material's factors with its textures at uv (texture_lookup.h), with glTF's
+//            channels
 // Out        linear values; the normal in tangent space: x along dP/du, y along -dP/dv (up in
 //            the picture), z along the interpolated normal; unit, (0, 0, 1) without a normal texture
 // Cost       without textures a copy; about 10 ns for each texture
@@ -43,6 +43,8 @@ SurfaceMaterial eval_material(const Material& material, std::span<const Texture>
 
 // Base colour alone.
 Rgb eval_base_color(const Material& material, std::span<const Texture> textures, Vec2f uv);
+// With this texture instead of its own.
+Rgb eval_base_color(const Material& material, const Texture& texture, Vec2f uv);
 
 // Light that a surface reflects can be told apart from its base colour's texture: it has one, and at no place emits or
 // transmits.

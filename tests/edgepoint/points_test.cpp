@@ -126,7 +126,7 @@ TEST(PointCache, moves_the_points_of_an_object_only) {
 TEST(PointCache, objects_have_numbers_of_24_bits) {
   std::vector<ShadedPoint> points;
   for (const std::uint32_t object : {0U, 0xffffU, 0x10000U, 0xabcdefU, kFarObject - 1}) {
-    points.push_back({{1, 2, 3}, Rgb(1), {}, object, kNoPoint});
+    points.push_back({{1, 2, 3}, Rgb(1), 0, {}, object, kNoPoint});
   }
   PointCache cache(points.size());
   cache.add(points, 0);
@@ -483,7 +483,7 @@ TEST(ComplexPixel, mixes_the_colours_around_it) {
                                      {colors.row(y), weights.data()},
                                      {colors.row(y + 1), weights.data()}};
     const Rgb c =
-        reconstruct_complex_pixel(image, 40, y, {colors, around, nullptr, {0.5F, 0.5F, 0.25F}});
+        reconstruct_complex_pixel(image, 40, y, {colors, around, nullptr, nullptr, {0.5F, 0.5F, 0.25F}});
     EXPECT_NEAR(c.x + c.y, 1, 1e-5);
     EXPECT_NEAR(c.z, 0.25F, 1e-6);
     // 0.3 of the left, 0.4 of the right, and the wire between, of which nothing is known.
@@ -506,7 +506,7 @@ TEST(ComplexPixel, takes_what_its_neighbours_are_known_to_be) {
   }
   ASSERT_TRUE(image.codes[image.offset(40, 11)].is_complex());
   const PrimaryRows rows{colors.row(0), known.data()};
-  const ComplexPixelColors of{colors, {rows, rows, rows}, nullptr, {0, 0, 1}};
+  const ComplexPixelColors of{colors, {rows, rows, rows}, nullptr, nullptr, {0, 0, 1}};
   const Rgb c = reconstruct_complex_pixel(image, 40, 11, of);
   // 0.2 of the left, 0.3 of the right; of the wire between nothing is known.
   EXPECT_NEAR(c.x, 0.2F + 0.3F * 0.5F, 0.07F);

@@ -419,6 +419,30 @@ TEST(EdgePoint, textures_of_glossy_surfaces_are_sharp_beneath_their_reflections)
   EXPECT_LT(errors.sharp, 0.4 * errors.blurred) << errors.sharp << " and " << errors.blurred;
 }
 
+// Light that comes from one direction: what a surface reflects beneath its glints goes with the texture alone, however
+// much it would reflect of light from all sides.
+TEST(EdgePoint, dark_textures_of_glossy_surfaces_stay_dark) {
+  Scene described = make_checkered_scene(64);
+  described.materials[0].glossy_mix.reset();
+  described.materials[0].roughness = 0.1F;
+  for (std::array<std::uint8_t, 4>& texel : described.textures[0].texels) texel = {20, 20, 20, 255};
+  described.lights = {DirectionalLight{{0.3, 0.8, -1}, Rgb(1)}};
+  described.environment = ConstantEnvironment{};
+  described.image.max_depth = 1;
+  const auto scene = prepare_scene(described);
+  const Image reference = path_picture(scene, 64);
+  EdgePointSettings settings = synchronous(EdgePointShader::direct);
+  settings.first_density = 1;
+  EdgePointEngine engine(scene, settings);
+  const Image& picture = engine.next_frame();
+  double mean = 0, wanted = 0;
+  for (std::size_t i = 0; i < picture.values.size(); ++i) {
+    mean += double(picture.values[i]);
+    wanted += double(reference.values[i]);
+  }
+  EXPECT_NEAR(mean, wanted, 0.05 * wanted);
+}
+
 TEST(EdgePoint, without_textures_points_keep_their_colours) {
   const auto scene = prepare_scene(make_scene(48));
   std::vector<Image> pictures;

@@ -335,7 +335,7 @@ TEST(csg_shadows, of_area_lights_have_penumbras) {
   finder.add({&triple, 1});
   ASSERT_TRUE(finder.update(*prepared, objects, 1'000'000));
   int along_x = 0;
-  for (const SoftEdge& e : finder.edges()) {
+  for (const SoftEdge& e : *finder.edges()) {
     const Vec3f a = e.edge.a, b = e.edge.b;
     if (length(b - a) < 1e-3F || std::abs(a.y - b.y) > 1e-4F || a.y > -0.51F) continue;
     ++along_x;
