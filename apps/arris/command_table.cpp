@@ -27,20 +27,21 @@ OptionGroup rounding_group(const std::string& default_radius) {
 }
 
 OptionGroup edge_point_group() {
-  return {"Edges and points",
-          {{"--shader", "direct|glossy|gi",
-            "edge-point: which light points are shaded with: direct, and that of glossy surfaces, "
-            "or all (default: gi)"},
-           {"--density", "PART",
-            "edge-point: of the pixels that are shaded anew for each frame (default: 0.02; 1 for a "
-            "single picture)"},
-           {"--point-paths", "N",
-            "edge-point: paths for each point (default: 4 direct, 8 glossy, 16 gi)"},
-           {"--trace-below", "MS",
-            "edge-point: frames for which paths through every pixel are so cheap, at 4 million "
-            "rays a second, are traced instead, which is said; 0: none (default: 16)"},
-           {"--edges", "on|off",
-            "edge-point: off interpolates across all edges, for comparison (default: on)"}}};
+  return {
+      "Edges and points",
+      {{"--shader", "direct|glossy|gi",
+        "edge-point: which light points are shaded with: direct, and that of glossy surfaces, "
+        "or all (default: gi)"},
+       {"--density", "PART",
+        "edge-point: of the pixels that are shaded anew for each frame (default: 0.02, up to 0.2 "
+        "where something has moved; 1 for a single picture)"},
+       {"--point-paths", "N",
+        "edge-point: paths for each point (default: 4 direct, 8 glossy, 16 gi)"},
+       {"--trace-below", "MS",
+        "edge-point: frames for which paths through every pixel are so cheap, at 4 million "
+        "rays a second, are traced instead, which is said; 0: none (default: 16)"},
+       {"--edges", "on|off",
+        "edge-point: off interpolates across all edges, for comparison (default: on)"}}};
 }
 
 OptionGroup input_group() {

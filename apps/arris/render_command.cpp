@@ -140,7 +140,7 @@ std::string format_work(const JobResult& result) {
     return "every pixel traced, as edges and points would cost more or show nothing";
   }
   if (result.edge_point && result.part.samples[0].last == 1) {
-    return fmt::format("{} new points of {}", result.edge_point->new_points,
+    return fmt::format("{} points shaded, {} known", result.edge_point->new_points,
                        result.edge_point->points);
   }
   if (!result.beam) return "samples " + format_samples(result.part.samples);
@@ -181,7 +181,7 @@ void check_frames(const Scene& scene, FrameRange frames, const std::string& name
   if (!scene.animation.has_keys()) {
     throw Error(
         Error::Kind::input, name,
-        "has no keys, so that all frames were one; leave out --frames, or add keys to a "
+        "has no keys, so that all frames would be the same; leave out --frames, or add keys to a "
         "scene file: [[camera.key]] frame = 0 position = [3, -4, 2], and [[object.key]] and "
         "[[light.key]] likewise below their [[object]] and [[light]]");
   }

@@ -79,6 +79,7 @@ std::optional<SampleRange> make_samples(const Arguments& arguments) {
 constexpr Integrator kIntegrators[] = {Integrator::path, Integrator::beam, Integrator::edge_point};
 // What the paper's scenes have, of pixels shaded a frame.
 constexpr double kFrameDensity = 0.02;
+constexpr double kMostDensity = 0.2;  // of frames before which much has changed
 // Of a frame that is traced instead: 60 a second.
 constexpr double kTraceBelowMs = 16;
 constexpr std::uint64_t kMostPointPaths = 65536;
@@ -105,6 +106,8 @@ EdgePointSettings parse_edge_point_settings(const Arguments& arguments, Integrat
   settings.density = arguments.has("--frames") ? kFrameDensity : 1;
   if (const auto given = find_given(arguments, "--density")) {
     settings.density = parse_real(*given, {1e-4, 1});
+  } else {
+    settings.most_density = kMostDensity;
   }
   // Frames are as dense from the first on; a single picture is soon there.
   if (arguments.has("--frames")) {

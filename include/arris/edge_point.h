@@ -33,6 +33,9 @@ struct EdgePointSettings {
   EdgePointShader shader = EdgePointShader::gi;
   // New points a frame, in parts of the pixels: above 0, at most 1.
   double density = 0.02;
+  // And up to so many where much is wrong or missing: after lights or objects have moved, or much has come into view.
+  // 0: no more than `density`.
+  double most_density = 0;
   int paths_per_point = 0;  // 0: as many as the shader needs for little noise
   // False: points are interpolated across everything, as in the Render Cache.
   bool use_edges = true;
@@ -70,7 +73,8 @@ struct EdgePointStats {
   // Every pixel was traced, without edges and points: stages but `total`, which has the tracing in it, classes and
   // edges are 0.
   bool traced = false;
-  // Shaded since the last frame: points, and pixels of a view that stands still. `synchronous`: for the next frame.
+  // Shaded since the last frame: points, and pixels of a view that stands still. `synchronous`: for this frame where
+  // something has changed, else for the next one.
   std::uint64_t new_points = 0;
   std::uint64_t points = 0;      // in the cache
   std::uint64_t hidden = 0;      // of them, seen through gaps and left out

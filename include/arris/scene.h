@@ -208,7 +208,8 @@ struct CameraKey {
 
 struct ObjectKey {
   double frame = 0;
-  Vec3d translate, rotate_deg, scale{1, 1, 1};  // as make_placement() has them
+  Vec3d translate, rotate_deg,
+      scale{1, 1, 1};  // scaled first, then turned about x, y and z, then moved
 };
 // Objects that move together: all those of a file.
 struct ObjectTrack {

@@ -89,6 +89,8 @@ struct EdgePointImage {
   std::vector<PointKey> points;
   CornerPlanes corners;
   BitPlane occupied;  // that have a point
+  BitPlane fresh;  // of `samples`, those that are not stale; means nothing unless `some_are_stale`
+  bool some_are_stale = false;
   BitPlane samples;  // whose point is known to lie in the primary region, so that others may use it
   ReachPlanes reach;
 
@@ -101,6 +103,7 @@ struct EdgePointImage {
         points(codes.size()),
         corners(width, height),
         occupied(width, height),
+        fresh(width, height),
         samples(width, height),
         reach(width, height) {}
 

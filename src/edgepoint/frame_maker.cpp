@@ -9,6 +9,7 @@
 
 #include "base/check.h"
 #include "base/parallel_for.h"
+#include "edgepoint/fresh_samples.h"
 #include "edgepoint/hidden_points.h"
 #include "edgepoint/hole_filler.h"
 #include "edgepoint/point_raster.h"
@@ -161,6 +162,13 @@ FrameReport FrameMaker::make(const PixelView& view, const FrameEdges& edges, Poi
     report.hidden += pixels.size();
   }
   report.times.points += watch.lap();
+
+  image_.some_are_stale = settings.points_may_be_stale;
+  if (image_.some_are_stale) {
+    parallel_for(bands_.size(), parallel,
+                 [&](std::size_t i) { find_fresh_samples(cache, bands_[i], image_); });
+    report.times.points += watch.lap();
+  }
 
   std::vector<BandReport> reports(bands_.size());
   const TintImage* const tints = settings.find_tints ? settings.find_tints(image_) : nullptr;

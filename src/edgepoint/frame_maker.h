@@ -45,6 +45,8 @@ struct FrameSettings {
   std::function<const TintImage*(const EdgePointImage&)> find_tints;
   // What no edge parts may still be two objects: points are hidden by those of their own object only.
   bool edges_are_missing = false;
+  // Something has changed not long ago: of points within reach those that are not stale count (fresh_samples.h).
+  bool points_may_be_stale = false;
 };
 
 struct FrameEdges {

@@ -49,9 +49,34 @@ struct TapMasks {
   std::array<std::uint64_t, kVectorWords> any;
 };
 
+// Where a fresh sample is within reach, all that is not is left out. lacking: pixels that have none.
+template <std::size_t... kTap>
+HWY_INLINE void keep_fresh(const EdgePointImage& image, int y, int word, TapMasks& masks,
+                           std::uint64_t* lacking, std::index_sequence<kTap...> /*taps*/) {
+  const WordLanes d;
+  WordVector any = hn::Zero(d);
+  std::array<std::array<std::uint64_t, kVectorWords>, kTaps> fresh;
+  const auto find = [&](auto tap) HWY_ATTR {
+    constexpr std::size_t kIndex = decltype(tap)::value;
+    constexpr ReachOffset kOffset = tap_offset(kIndex);
+    const WordVector found =
+        hn::And(hn::LoadU(d, masks.taps[kIndex].data()),
+                shifted_words<kOffset.dx>(image.fresh.row(y + kOffset.dy), word));
+    hn::StoreU(found, d, fresh[kIndex].data());
+    any = hn::Or(any, found);
+  };
+  (find(std::integral_constant<std::size_t, kTap>()), ...);
+  hn::StoreU(hn::Not(any), d, lacking + word);
+  for (std::size_t tap = 0; tap < kTaps; ++tap) {
+    const WordVector all = hn::LoadU(d, masks.taps[tap].data());
+    hn::StoreU(hn::Or(hn::LoadU(d, fresh[tap].data()), hn::AndNot(any, all)), d,
+               masks.taps[tap].data());
+  }
+}
+
 template <std::size_t... kTap>
 HWY_INLINE void find_masks(const EdgePointImage& image, int y, int word, TapMasks& out,
-                           std::index_sequence<kTap...> /*taps*/) {
+                           std::uint64_t* lacking, std::index_sequence<kTap...> /*taps*/) {
   const WordLanes d;
   // Complex pixels are those whose corners belong to no region.
   const WordVector complex =
@@ -81,6 +106,8 @@ HWY_INLINE void find_masks(const EdgePointImage& image, int y, int word, TapMask
   };
   (add(std::integral_constant<std::size_t, kTap>()), ...);
   hn::StoreU(any, d, out.any.data());
+  if (image.some_are_stale)
+    keep_fresh(image, y, word, out, lacking, std::index_sequence<kTap...>());
 }
 
 // A vector of pixels from x on, which are those of a word from bit `first` on.
@@ -110,22 +137,24 @@ HWY_INLINE void sum_taps(const TapMasks& masks, std::size_t word, unsigned first
   hn::StoreU(sum, f, weight + x);
 }
 
-void interpolate(const EdgePointImage& image, int y, const SampleRows& rows, ColorRow out,
-                 float* weight) {
+void interpolate(const EdgePointImage& image, int y, const SampleRows& rows,
+                 const InterpolatedRow& out) {
   constexpr auto kAll = std::make_index_sequence<kTaps>();
   const PixelLanes f;
   const auto zero = hn::Zero(f);
   const int step = int(hn::Lanes(WordLanes())), lanes = int(hn::Lanes(f));
   TapMasks masks;
   for (int word = 0; word < image.samples.words(); word += step) {
-    find_masks(image, y, word, masks, kAll);
+    find_masks(image, y, word, masks, out.lacking, kAll);
     for (int x = 64 * word; x < std::min(64 * (word + step), image.width_px); x += lanes) {
       const auto in_masks = std::size_t(x / 64 - word);
       if (masks.any[in_masks] != 0) {
-        sum_taps(masks, in_masks, unsigned(x % 64), rows, x, out, weight, kAll);
+        sum_taps(masks, in_masks, unsigned(x % 64), rows, x, out.color, out.weight, kAll);
         continue;
       }
-      for (float* const row : {out.r, out.g, out.b, weight}) hn::StoreU(zero, f, row + x);
+      for (float* const row : {out.color.r, out.color.g, out.color.b, out.weight}) {
+        hn::StoreU(zero, f, row + x);
+      }
     }
   }
 }
@@ -159,11 +188,11 @@ void interleave_row(ColorRow row, int width, float* out) {
   HWY_DYNAMIC_DISPATCH(interleave)(row, width, out);
 }
 
-void interpolate_row(const EdgePointImage& image, int y, ColorRows& samples, ColorRow out,
-                     float* weight) {
+void interpolate_row(const EdgePointImage& image, int y, ColorRows& samples,
+                     const InterpolatedRow& out) {
   SampleRows rows;
   for (int dy = -2; dy <= 2; ++dy) rows[std::size_t(2 + dy)] = samples.row(y + dy);
-  HWY_DYNAMIC_DISPATCH(interpolate)(image, y, rows, out, weight);
+  HWY_DYNAMIC_DISPATCH(interpolate)(image, y, rows, out);
 }
 
 }  // namespace arris

@@ -36,6 +36,7 @@ class BandMaker {
         weights_(std::size_t(kPrimaryRows) * weight_stride()),
         wishes_(std::size_t(kSampleRows) * weight_stride()),
         looks_(weight_stride()),
+        lacking_(std::size_t(kPrimaryRows) * lacking_stride()),
         painted_samples_(settings.tints != nullptr ? kSampleRows : 0, width_),
         painted_(settings.tints != nullptr ? 1 : 0, width_) {}
 
@@ -45,7 +46,7 @@ class BandMaker {
     for (int y = first - 2; y < first + 2; ++y) fetch(y);
     for (int y = first; y < last; ++y) {
       fetch(y + 2);
-      interpolate_row(image_, y, samples_, primary_.row(y), weight_row(y));
+      interpolate_row(image_, y, samples_, {primary_.row(y), weight_row(y), lacking_row(y)});
       if (settings_.tints != nullptr) tint_row(primary_.row(y), y);
       if (y > band_.first) finish(y - 1);
     }
@@ -59,6 +60,12 @@ class BandMaker {
   }
   [[nodiscard]] float* weight_row(int y) {
     return weights_.data() + std::size_t((y + kPrimaryRows) % kPrimaryRows) * weight_stride();
+  }
+  [[nodiscard]] std::size_t lacking_stride() const {
+    return std::size_t(image_.samples.words()) + kVectorWords;
+  }
+  [[nodiscard]] std::uint64_t* lacking_row(int y) {
+    return lacking_.data() + std::size_t((y + kPrimaryRows) % kPrimaryRows) * lacking_stride();
   }
   [[nodiscard]] std::uint8_t* wish_row(int y) {
     return wishes_.data() + std::size_t((y + kSampleRows) % kSampleRows) * weight_stride();
@@ -96,7 +103,8 @@ class BandMaker {
       return;
     }
     const ColorRow painted = painted_.row(0);
-    interpolate_row(image_, y, painted_samples_, painted, painted_weights_.data());
+    interpolate_row(image_, y, painted_samples_,
+                    {painted, painted_weights_.data(), painted_lacking_.data()});
     for (int word = 0; word < tints.is_tinted.words(); ++word) {
       for (std::uint64_t bits = tints.is_tinted.row(y)[word]; bits != 0; bits &= bits - 1) {
         const int x = 64 * word + std::countr_zero(bits);
@@ -165,6 +173,20 @@ class BandMaker {
     const std::size_t offset = image_.offset(0, y);
     find_wanted(wanted_.subspan(offset, std::size_t(width_)), weight, wish_row(y), offset,
                 report_.unresolved);
+    if (image_.some_are_stale) want_fresh(y);
+  }
+
+  // Where all that is seen is stale a sample is wanted, also by pixels without a point; where one of them is fresh,
+  // little more are.
+  void want_fresh(int y) {
+    constexpr std::uint8_t kLacking = 160, kEnough = 32;
+    const std::span<std::uint8_t> row = wanted_.subspan(image_.offset(0, y), std::size_t(width_));
+    const std::uint64_t* const lacking = lacking_row(y);
+    for (int x = 0; x < width_; ++x) {
+      std::uint8_t& wanted = row[std::size_t(x)];
+      const bool lacks = lacking[x / 64] >> unsigned(x % 64) & 1U;
+      wanted = lacks ? std::max(wanted, kLacking) : std::min(wanted, kEnough);
+    }
   }
 
   const EdgePointImage& image_;
@@ -178,8 +200,10 @@ class BandMaker {
   std::vector<float> weights_;
   std::vector<std::uint8_t> wishes_;
   std::vector<PointLook> looks_;
+  std::vector<std::uint64_t> lacking_;
   ColorRows painted_samples_, painted_;
   std::vector<float> painted_weights_ = std::vector<float>(weight_stride());
+  std::vector<std::uint64_t> painted_lacking_ = std::vector<std::uint64_t>(lacking_stride());
   BandReport report_;
   Clock::time_point last_lap_ = Clock::now();
 };

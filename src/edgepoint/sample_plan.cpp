@@ -32,7 +32,15 @@ std::array<std::uint16_t, std::size_t(kPattern* kPattern)> make_pattern() {
   return pattern;
 }
 
+constexpr int kUrgentFrom = 64, kMostWanted = 255;
+
 }  // namespace
+
+std::size_t count_urgent(std::span<const std::uint8_t> wanted) {
+  std::uint64_t sum = 0;
+  for (const std::uint8_t w : wanted) sum += std::uint64_t(std::max(0, int(w) - kUrgentFrom));
+  return std::size_t(sum / (kMostWanted - kUrgentFrom));
+}
 
 std::vector<std::uint32_t> plan_samples(std::span<const std::uint8_t> wanted,
                                         const SamplePlanSettings& settings) {

@@ -21,6 +21,10 @@ struct SamplePlanSettings {
   std::uint32_t frame = 0;
 };
 
+// About how many samples would leave nothing much wanted: pixels, counted the more the more they want one, from a
+// quarter of what wants one most on.
+std::size_t count_urgent(std::span<const std::uint8_t> wanted);
+
 // Offsets of pixels.
 std::vector<std::uint32_t> plan_samples(std::span<const std::uint8_t> wanted,
                                         const SamplePlanSettings& settings);

@@ -78,7 +78,7 @@ class EdgePicture {
     shadows.update(scene, objects, kMostEvents);
     Image unused(image_.width_px, image_.height_px, 3);
     maker_.make(view, {edges.lists(), *shadows.edges()}, cache,
-                {0, false, settings.threads, {}, false}, unused);
+                {0, false, settings.threads, {}, false, false}, unused);
   }
 
   [[nodiscard]] const EdgePointImage& image() const { return maker_.image(); }

@@ -60,6 +60,8 @@ EdgePointSettings checked(const EdgePointSettings& settings) {
   };
   check(settings.density > 0 && settings.density <= 1, "density", settings.density,
         "above 0 and at most 1");
+  check(settings.most_density >= 0 && settings.most_density <= 1, "most_density",
+        settings.most_density, "within 0 and 1");
   check(settings.first_density >= 0 && settings.first_density <= 1, "first_density",
         settings.first_density, "within 0 and 1");
   check(settings.paths_per_point >= 0, "paths_per_point", settings.paths_per_point, "0 or more");
@@ -135,12 +137,18 @@ class EdgePointEngine::Impl {
     const CameraRays rays = make_camera_rays(camera_, image_);
     if (workers_) collect();
     if (!workers_ && frame_ == 0) shade_first(rays);
+    const bool has_changed = !workers_ && still_frames_ == 0 && has_points_;
     stats_.traced = choice_.decide(pixel_count(), frame_ms_);
     if (stats_.traced) {
       trace_frame(rays);
     } else {
       if (!workers_ && !has_points_) shade_first(rays);
       make_frame(rays);
+      // What has moved is shaded before it is shown: a frame of points of the scene before would be late.
+      if (has_changed) {
+        shade_now(*make_plan(rays, wanted_density()), false);
+        make_frame(rays);
+      }
       // Nothing to interpolate: from where the eye is no point can be projected.
       if (!workers_ && stats_.unresolved == film_size()) {
         stats_ = {};
@@ -155,8 +163,8 @@ class EdgePointEngine::Impl {
     if (workers_) {
       workers_->set_plan(make_plan(rays, planned_density()));
       workers_->set_paused(false);
-    } else {
-      shade_now(*make_plan(rays, settings_.density), true);
+    } else if (!has_changed) {
+      shade_now(*make_plan(rays, wanted_density()), true);
     }
     return picture_;
   }
@@ -201,8 +209,11 @@ class EdgePointEngine::Impl {
     EdgeTotals totals = edges_.totals();
     totals.shadow = shown_.shadow_edges->size();
     stats_.stages.edges = milliseconds_since(start);
-    FrameSettings frame{
-        frame_, settings_.complex_filter, settings_.threads, {}, !settings_.use_edges};
+    FrameSettings frame{.frame = frame_,
+                        .complex_filter = settings_.complex_filter,
+                        .threads = settings_.threads,
+                        .edges_are_missing = !settings_.use_edges,
+                        .points_may_be_stale = frame_ - changed_ < kFramesOfStale};
     if (settings_.sharp_textures) {
       frame.find_tints = [&](const EdgePointImage& image) {
         return tints_.update(*shown_.scene, camera, cache_, image, settings_.threads);
@@ -271,9 +282,14 @@ class EdgePointEngine::Impl {
     choice_.add({sums.size(), stats_.rays.total, stats_.stages.total / 1e3}, 1);
   }
 
+  // What shows that is wrong or missing is shaded at once, as far as the settings allow.
+  [[nodiscard]] double wanted_density() const {
+    const double urgent = double(count_urgent(maker_.wanted())) / pixel_count();
+    return std::max(settings_.density, std::min(urgent, settings_.most_density));
+  }
   [[nodiscard]] double planned_density() const {
     const double done = double(last_items_) / pixel_count();
-    return std::clamp(kMoreThanDone * done, settings_.density / 8, settings_.density);
+    return std::clamp(kMoreThanDone * done, settings_.density / 8, wanted_density());
   }
 
   [[nodiscard]] std::shared_ptr<const ShadePlan> make_plan(const CameraRays& camera,
@@ -384,6 +400,8 @@ class EdgePointEngine::Impl {
 
   void keep_report(const FrameReport& report, const EdgeTotals& totals);
 
+  // Until all that is seen has been shaded anew.
+  static constexpr std::uint32_t kFramesOfStale = 256;
   // Pixels that want a point so much get one, also in a view that stands still.
   static constexpr std::uint8_t kUrgent = 128;
   // But only for so many frames.
@@ -407,6 +425,7 @@ class EdgePointEngine::Impl {
   TraceChoice choice_;
   EdgePointStats stats_;
   std::uint32_t frame_ = 0;
+  std::uint32_t changed_ = ~kFramesOfStale;  // the frame before which the scene has changed last
   std::uint32_t still_frames_ = 0;
   std::uint64_t view_ = 0;
   std::uint64_t last_items_ = 0;
@@ -458,6 +477,7 @@ void EdgePointEngine::Impl::show(ShownScene next) {
   const LightChanges changes = find_changed_lights(before, after);
   if (changes.amount > 0) cache_.make_stale(stale_by_light(changes.amount));
   lights_ = std::make_shared<const std::vector<ShadowLight>>(shadow_lights(*shown_.scene));
+  changed_ = frame_;
   updater_.retire(std::move(next.scene));
   view_changed();
 }

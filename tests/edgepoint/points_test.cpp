@@ -407,6 +407,28 @@ std::vector<ScreenEdge> random_edges(std::mt19937& random, int count) {
   return edges;
 }
 
+// One fresh sample among stale ones, in a picture without edges: it alone counts where it is within reach.
+TEST(Interpolate, takes_stale_samples_only_where_no_fresh_one_is) {
+  EdgePointImage image = image_of_depths(std::vector<float>(std::size_t(kWidth) * kHeight, 1), {});
+  image.some_are_stale = true;
+  constexpr int kX = 30, kY = 20;
+  image.fresh.row(kY)[0] = std::uint64_t{1} << unsigned(kX);
+  ColorRows colors(8, kWidth);
+  for (int y = 0; y < 8; ++y) std::fill_n(colors.row(y).r, kWidth, 1.0F);
+  colors.row(kY).r[kX] = 0.25F;
+  ColorRows out(1, kWidth);
+  std::vector<float> weight(kWidth + 64);
+  std::vector<std::uint64_t> lacking(kWidth / 64 + 1 + kVectorWords);
+  for (int y = kY - 3; y <= kY + 3; ++y) {
+    interpolate_row(image, y, colors, {out.row(0), weight.data(), lacking.data()});
+    for (int x = kX - 4; x <= kX + 4; ++x) {
+      const bool reached = std::abs(x - kX) <= 2 && std::abs(y - kY) <= 2;
+      EXPECT_NEAR(out.row(0).r[x], reached ? 0.25F : 1.0F, 1e-6F) << x << ", " << y;
+      EXPECT_EQ(lacking[0] >> unsigned(x) & 1U, reached ? 0U : 1U);
+    }
+  }
+}
+
 TEST(Interpolate, takes_the_weighted_mean_of_what_is_reached) {
   std::mt19937 random(7);
   std::uniform_real_distribution<float> unit(0, 1);
@@ -428,7 +450,7 @@ TEST(Interpolate, takes_the_weighted_mean_of_what_is_reached) {
   std::vector<float> weight(kWidth + 64);
   int apart = 0;
   for (int y = 0; y < kHeight; ++y) {
-    interpolate_row(image, y, colors, out.row(0), weight.data());
+    interpolate_row(image, y, colors, {out.row(0), weight.data(), nullptr});
     for (int x = 0; x < kWidth; ++x) {
       const bool complex = image.codes[image.offset(x, y)].is_complex();
       Rgb sum;
@@ -482,8 +504,8 @@ TEST(ComplexPixel, mixes_the_colours_around_it) {
     const PrimaryNeighborhood around{{colors.row(y - 1), weights.data()},
                                      {colors.row(y), weights.data()},
                                      {colors.row(y + 1), weights.data()}};
-    const Rgb c =
-        reconstruct_complex_pixel(image, 40, y, {colors, around, nullptr, nullptr, {0.5F, 0.5F, 0.25F}});
+    const Rgb c = reconstruct_complex_pixel(
+        image, 40, y, {colors, around, nullptr, nullptr, {0.5F, 0.5F, 0.25F}});
     EXPECT_NEAR(c.x + c.y, 1, 1e-5);
     EXPECT_NEAR(c.z, 0.25F, 1e-6);
     // 0.3 of the left, 0.4 of the right, and the wire between, of which nothing is known.

@@ -477,7 +477,7 @@ TEST(Frames, are_made_of_edges_and_points_too) {
   const Outcome run = place.arris(options + "--aov edges -o f_#.png --stats s.json");
   ASSERT_EQ(run.code, 0) << run.err;
   EXPECT_THAT(run.err, HasSubstr("f_2.png: 80 x 60 pixels, "));
-  EXPECT_THAT(run.err, HasSubstr(" new points of "));
+  EXPECT_THAT(run.err, HasSubstr(" points shaded, "));
   EXPECT_TRUE(std::filesystem::exists(place / "f_1.edges.png"));
   const auto stats = nlohmann::json::parse(place.read("s.json"));
   EXPECT_EQ(stats["frames"], 3);
@@ -514,7 +514,7 @@ TEST(Frames, that_are_cheap_are_traced_and_say_so) {
   ASSERT_EQ(run.code, 0) << run.err;
   EXPECT_THAT(run.err, HasSubstr("f_1.png: 20 x 16 pixels, every pixel traced, "));
   EXPECT_EQ(nlohmann::json::parse(place.read("s.json"))["edge_point"]["traced"], 2);
-  EXPECT_THAT(place.arris(options + "--trace-below 0").err, HasSubstr(" new points of "));
+  EXPECT_THAT(place.arris(options + "--trace-below 0").err, HasSubstr(" points shaded, "));
 }
 
 TEST(Render, of_edges_and_points_stands_still_until_each_pixel_has_its_paths) {

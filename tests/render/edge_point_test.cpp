@@ -232,6 +232,28 @@ TEST(EdgePoint, moved_objects_and_lights_show_where_they_are) {
 }
 
 // Vertex normals make a mesh smooth: its facets show no edges.
+// A light and an object that move in every frame: the picture is about as good as one of as many points that are all
+// new, as old ones don't count beside those.
+TEST(EdgePoint, what_moves_in_every_frame_does_not_lag) {
+  Scene described = make_scene(96);
+  described.image.max_depth = 1;
+  EdgePointSettings settings = synchronous(EdgePointShader::direct);
+  settings.most_density = 0.2;
+  EdgePointEngine engine(prepare_scene(described, {.placement = Placement::movable}), settings);
+  const Image* picture = nullptr;
+  for (int i = 0; i < 8; ++i) {
+    described.objects[1].world_from_object = translation({-0.4 - 0.1 * i, -0.3, 0.8});
+    described.lights[0] = PointLight{{2.5 - 0.5 * i, -3, 5}, Rgb(60)};
+    engine.move_object(1, described.objects[1].world_from_object);
+    engine.set_light(0, described.lights[0]);
+    picture = &engine.next_frame();
+  }
+  const auto last = prepare_scene(described);
+  const Image reference = render_path(described, 256).picture.color;
+  EdgePointEngine anew(last, settings);
+  EXPECT_LT(rmse(*picture, reference), 1.5 * rmse(anew.next_frame(), reference));
+}
+
 TEST(EdgePoint, smooth_meshes_show_outlines_only) {
   Scene scene = make_scene(32);
   Mesh sphere = make_sphere_mesh(3);
