@@ -16,6 +16,8 @@ packages=(
   nlohmann-json3-dev
   # geometry
   libqhull-dev
+  # the viewer: HTTP and WebSocket
+  libboost-dev
   # command line, text, log
   libcli11-dev libfmt-dev libspdlog-dev
   # tests

@@ -62,6 +62,15 @@ OptionGroup camera_group() {
            {"--fov", "DEG", "vertical field of view (default: the file's, else 35)"}}};
 }
 
+OptionGroup staging_group() {
+  return {"Staging",
+          {{"--lighting", "studio|sky|white",
+            "replaces the file's lights (default: the file's, else studio)"},
+           {"--material", "NAME", "replaces the file's materials; --material list shows the names"},
+           {"--ground", "on|off",
+            "a soft ground under the model (default: on for bare models without a camera)"}}};
+}
+
 CommandRow render_row() {
   return {
       "render",
@@ -120,12 +129,7 @@ CommandRow render_row() {
        edge_point_group(),
        input_group(),
        camera_group(),
-       {"Staging",
-        {{"--lighting", "studio|sky|white",
-          "replaces the file's lights (default: the file's, else studio)"},
-         {"--material", "NAME", "replaces the file's materials; --material list shows the names"},
-         {"--ground", "on|off",
-          "a soft ground under the model (default: on for bare models without a camera)"}}},
+       staging_group(),
        rounding_group("auto for bare models"),
        {"Running",
         {{"--threads", "N", "default: all; the picture does not depend on it"},
@@ -147,6 +151,52 @@ CommandRow render_row() {
        {"arris render turntable.toml -o f_####.png --frames 0..48",
         "48 frames of a scene with keys"}},
       run_render};
+}
+
+CommandRow view_row() {
+  return {
+      "view",
+      "INPUT",
+      1,
+      1,
+      "turn a model or scene under real light, in the browser",
+      "Prints an address, and opens it where there is a desktop: a page that shows the model as "
+      "arris render stages it and follows the mouse. The address holds a secret, and only this "
+      "machine is listened to: for another one use a tunnel, such as ssh -L 7878:localhost:7878. "
+      "Ctrl-C ends it. INPUT may be - for stdin.",
+      {{"Server",
+        {{"--host", "ADDRESS",
+          "where to listen; 0.0.0.0: for all that can reach this machine, who then need the "
+          "secret only (default: 127.0.0.1, this machine alone)"},
+         {"--port", "N", "0: any that is free (default: 7878, or any if it is taken)"},
+         {"--no-browser", "", "only print the address"},
+         {"--once", "", "end when the last page has been closed"},
+         {"--watch", "", "show the file anew when it changes"},
+         {"--allow-upload", "", "pages may show models that are dropped on them"}}},
+       {"Picture",
+        {{"--size", "WxH", "of the first picture, in pixels (default: the page's)"},
+         {"--spp", "N",
+          "samples per pixel at which a view that stands still is finished (default: the scene's, "
+          "else 64)"},
+         {"--max-depth", "N", "bounces of light (default: the scene's, else 8)"},
+         {"--exposure", "STOPS", "brightness (default: the scene's, else 0)"},
+         {"--shader", "direct|glossy|gi",
+          "which light is shown: direct, and that of glossy surfaces, or all (default: gi)"},
+         {"--trace-below", "MS",
+          "frames that take less are traced, pixel by pixel; 0: none (default: 16)"}}},
+       input_group(),
+       camera_group(),
+       staging_group(),
+       rounding_group("auto for bare models"),
+       {"Running",
+        {{"--threads", "N", "default: all"},
+         {"--quiet", "", "print errors only besides the address"},
+         {"--verbose", "", "print what was found and done"},
+         kHelp}}},
+      {{"arris view bracket.stl", "in the browser, or at the address that it prints"},
+       {"arris view bracket.csg --watch --round 0.5", "beside an editor"},
+       {"arris view part.glb --no-browser --port 7878", "on another machine, through a tunnel"}},
+      run_view};
 }
 
 CommandRow info_row() {
@@ -246,7 +296,7 @@ CommandRow compare_row() {
 }  // namespace
 
 std::span<const CommandRow> commands() {
-  static const std::vector<CommandRow> kCommands{render_row(), info_row(), shoot_row(), merge_row(),
+  static const std::vector<CommandRow> kCommands{render_row(), view_row(), info_row(), shoot_row(), merge_row(),
                                                  compare_row()};
   return kCommands;
 }

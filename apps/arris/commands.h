@@ -8,6 +8,7 @@ namespace arris::program {
 class Arguments;
 
 int run_render(const Arguments& arguments);
+int run_view(const Arguments& arguments);
 int run_info(const Arguments& arguments);
 int run_shoot(const Arguments& arguments);
 int run_merge(const Arguments& arguments);

@@ -48,21 +48,6 @@ CameraOptions make_camera_options(const Arguments& arguments) {
   return camera;
 }
 
-StageOptions make_stage_options(const Arguments& arguments) {
-  StageOptions stage;
-  if (const auto given = find_given(arguments, "--lighting")) {
-    constexpr Lighting kLightings[] = {Lighting::studio, Lighting::sky, Lighting::white};
-    stage.lighting = kLightings[parse_choice(*given, {"studio", "sky", "white"})];
-  }
-  if (const auto given = find_given(arguments, "--ground")) {
-    stage.ground = parse_choice(*given, {"off", "on"}) == 1;
-  }
-  if (const auto given = find_given(arguments, "--material"))
-    stage.material = parse_material(*given);
-  stage.camera = make_camera_options(arguments);
-  return stage;
-}
-
 std::optional<SampleRange> make_samples(const Arguments& arguments) {
   const auto samples = find_given(arguments, "--samples");
   const auto spp = find_given(arguments, "--spp");
@@ -80,8 +65,6 @@ constexpr Integrator kIntegrators[] = {Integrator::path, Integrator::beam, Integ
 // What the paper's scenes have, of pixels shaded a frame.
 constexpr double kFrameDensity = 0.02;
 constexpr double kMostDensity = 0.2;  // of frames before which much has changed
-// Of a frame that is traced instead: 60 a second.
-constexpr double kTraceBelowMs = 16;
 constexpr std::uint64_t kMostPointPaths = 65536;
 
 Integrator parse_integrator(const Arguments& arguments) {
@@ -97,11 +80,7 @@ EdgePointSettings parse_edge_point_settings(const Arguments& arguments, Integrat
     throw Error(Error::Kind::input, option, "needs --integrator edge-point");
   }
   EdgePointSettings settings;
-  if (const auto given = find_given(arguments, "--shader")) {
-    constexpr EdgePointShader kShaders[] = {EdgePointShader::direct, EdgePointShader::glossy,
-                                            EdgePointShader::gi};
-    settings.shader = kShaders[parse_choice(*given, {"direct", "glossy", "gi"})];
-  }
+  settings.shader = parse_shader(arguments);
   // A view that stands still is worked on all over.
   settings.density = arguments.has("--frames") ? kFrameDensity : 1;
   if (const auto given = find_given(arguments, "--density")) {
@@ -306,6 +285,28 @@ const char* name_of(Integrator integrator) {
       break;
   }
   return "path";
+}
+
+StageOptions make_stage_options(const Arguments& arguments) {
+  StageOptions stage;
+  if (const auto given = find_given(arguments, "--lighting")) {
+    constexpr Lighting kLightings[] = {Lighting::studio, Lighting::sky, Lighting::white};
+    stage.lighting = kLightings[parse_choice(*given, {"studio", "sky", "white"})];
+  }
+  if (const auto given = find_given(arguments, "--ground")) {
+    stage.ground = parse_choice(*given, {"off", "on"}) == 1;
+  }
+  if (const auto given = find_given(arguments, "--material"))
+    stage.material = parse_material(*given);
+  stage.camera = make_camera_options(arguments);
+  return stage;
+}
+
+EdgePointShader parse_shader(const Arguments& arguments) {
+  constexpr EdgePointShader kShaders[] = {EdgePointShader::direct, EdgePointShader::glossy,
+                                          EdgePointShader::gi};
+  const auto given = find_given(arguments, "--shader");
+  return given ? kShaders[parse_choice(*given, {"direct", "glossy", "gi"})] : EdgePointShader::gi;
 }
 
 RenderRequest make_render_request(const Arguments& arguments) {

@@ -48,6 +48,12 @@ const char* name_of(Integrator integrator);
 
 RenderRequest make_render_request(const Arguments& arguments);
 
+// Parts of it that other commands have, too.
+StageOptions make_stage_options(const Arguments& arguments);
+EdgePointShader parse_shader(const Arguments& arguments);
+// Of a frame that is traced instead: 60 a second.
+inline constexpr double kTraceBelowMs = 16;
+
 void apply_image_options(ImageSettings& image, const Arguments& arguments);
 
 // Before the scene is prepared: takes the pixel filter out of it, which is applied to what is denoised.

@@ -178,6 +178,7 @@ struct HdrEnvironment {
 // Soft three-light room for product pictures; the program's default.
 struct StudioEnvironment {
   double strength = 1;
+  double rotation = 0;  // about up, counter-clockwise seen from above
   Vec3d up{0, 0, 1};
   friend bool operator==(const StudioEnvironment&, const StudioEnvironment&) = default;
 };

@@ -219,7 +219,11 @@ std::optional<Environment> parse_environment_of(EnvironmentKind kind, TomlTableR
     case EnvironmentKind::studio:
       break;
   }
-  return StudioEnvironment{reader.number("strength", kStrength).value_or(1), context.scene.up};
+  StudioEnvironment studio;
+  studio.up = context.scene.up;
+  studio.strength = reader.number("strength", kStrength).value_or(1);
+  studio.rotation = radians(reader.number("rotation", {-360, 360}).value_or(0));
+  return studio;
 }
 
 }  // namespace

@@ -63,21 +63,17 @@ CameraRays make_camera_rays(const Camera& camera, const ImageSettings& image) {
 
 // With the view direction fixed, each side of the view pyramid bounds the camera's place by the point that
 // is farthest out on that side: x - z tan_x <= camera_x - camera_z tan_x for all points, and so on.
-Camera frame_scene(const Scene& scene, double fov_deg) {
+Camera frame_scene_from(const Scene& scene, Vec3d to_camera, Vec3d up, double fov_deg) {
   Camera camera;
   camera.fov_deg = fov_deg;
-  const GroundFrame ground = make_ground_frame(scene.up);
-  const Vec3d to_camera = std::cos(kElevation) * (std::sin(kAzimuth) * ground.east -
-                                                  std::cos(kAzimuth) * ground.north) +
-                          std::sin(kElevation) * ground.up;
-  const Axes axes = camera_axes(-to_camera, ground.up);
+  const Axes axes = camera_axes(-to_camera, up);
   const double tan_y = std::tan(radians(camera.fov_deg) / 2) * (1 - 2 * kMargin);
   const double tan_x = tan_y * scene.image.width_px / scene.image.height_px;
   const Extent e = extent_of(scene, axes, tan_x, tan_y);
-  camera.up = ground.up;
+  camera.up = up;
   const Bounds bounds = world_bounds(scene);
   if (bounds.is_empty()) {  // nothing to see
-    camera.position = to_camera * 5.0;
+    camera.position = normalize(to_camera) * 5.0;
     camera.target = {};
     return camera;
   }
@@ -92,6 +88,14 @@ Camera frame_scene(const Scene& scene, double fov_deg) {
   camera.position = axes.right * x + axes.up * y + axes.forward * z;
   camera.target = axes.right * x + axes.up * y + axes.forward * target_z;
   return camera;
+}
+
+Camera frame_scene(const Scene& scene, double fov_deg) {
+  const GroundFrame ground = make_ground_frame(scene.up);
+  const Vec3d to_camera = std::cos(kElevation) * (std::sin(kAzimuth) * ground.east -
+                                                  std::cos(kAzimuth) * ground.north) +
+                          std::sin(kElevation) * ground.up;
+  return frame_scene_from(scene, to_camera, ground.up, fov_deg);
 }
 
 }  // namespace arris

@@ -25,5 +25,7 @@ inline TraceRay camera_ray(const CameraRays& camera, double x, double y) {
 // A three-quarter view from the front, the right and above, as near as the whole model allows with a
 // margin. Precondition: a valid scene.
 Camera frame_scene(const Scene& scene, double fov_deg = Camera{}.fov_deg);
+// The same seen from elsewhere. to_camera: not along `up`, neither need be unit.
+Camera frame_scene_from(const Scene& scene, Vec3d to_camera, Vec3d up, double fov_deg);
 
 }  // namespace arris

@@ -202,6 +202,7 @@ class Fingerprint {
   }
   void add(const StudioEnvironment& environment) {
     add(environment.strength);
+    add(environment.rotation);
     add(environment.up);
   }
   template <class... Kinds>

@@ -143,7 +143,7 @@ struct EnvironmentMaker {
     StudioModel studio = make_studio_model(e.strength);
     light.backdrop = std::move(studio.backdrop);
     light.map = make_environment_map(studio.width_px, studio.height_px, std::move(studio.radiance),
-                                     frame_about(e.up, 0));
+                                     frame_about(e.up, e.rotation));
     return light;
   }
 };

@@ -1,0 +1,134 @@
+#include <fmt/format.h>
+#include <spawn.h>
+#include <sys/wait.h>
+
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+#include <string>
+#include <utility>
+
+#include "arris/command_line.h"
+#include "arris/commands.h"
+#include "arris/console.h"
+#include "arris/error.h"
+#include "arris/input.h"
+#include "arris/render.h"
+#include "arris/render_request.h"
+#include "arris/values.h"
+#include "scene/limits.h"
+#include "view/view_server.h"
+
+extern char** environ;
+
+namespace arris::program {
+namespace {
+
+constexpr std::uint16_t kPort = 7878;
+
+view::ServerSettings make_server_settings(const Arguments& arguments) {
+  view::ServerSettings settings;
+  settings.host = arguments.find("--host").value_or(settings.host);
+  settings.port = kPort;
+  settings.or_any_port = true;
+  if (const auto given = find_given(arguments, "--port")) {
+    settings.port = std::uint16_t(parse_count(*given, 0, 65535));
+    settings.or_any_port = false;
+  }
+  settings.once = arguments.has("--once");
+  settings.allow_upload = arguments.has("--allow-upload");
+  settings.watch = arguments.has("--watch");
+  settings.watched = arguments.positionals[0];
+  if (settings.watch && arguments.positionals[0] == "-") {
+    throw Error(Error::Kind::input, "--watch", "needs a file; stdin can't be read again");
+  }
+  return settings;
+}
+
+// As apply_request() has it, but that staging is left to the viewer, which does it again and again.
+view::ViewModel make_model(Input loaded, const std::filesystem::path& file,
+                           const Arguments& arguments) {
+  check_scene(loaded.scene, loaded.name);
+  view::ViewModel model;
+  model.name = std::filesystem::path(loaded.name).filename().string();
+  model.file = file;
+  model.is_scene_file = loaded.is_scene_file;
+  model.scene = std::move(loaded.scene);
+  apply_image_options(model.scene.image, arguments);
+  if (const auto given = find_given(arguments, "--spp")) {
+    model.scene.image.samples_per_pixel = int(parse_count(*given, 1, kMostSamples));
+  }
+  model.stage = make_stage_options(arguments);
+  if (model.is_scene_file) {
+    model.stage.source = StageOptions::Source::scene_file;
+  } else if (!model.scene.rounding) {
+    model.scene.rounding.emplace().method = RoundMethod::exact;
+  }
+  apply_rounding_options(model.scene, arguments);
+  model.shader = parse_shader(arguments);
+  return model;
+}
+
+view::ViewModel open_model(const std::filesystem::path& file, const std::string& name,
+                           const Arguments& arguments) {
+  view::ViewModel model =
+      make_model(load_input(file.string(), load_options_of(arguments)), file, arguments);
+  model.name = name;
+  return model;
+}
+
+bool has_desktop() {
+  const auto is_set = [](const char* name) {
+    const char* value = std::getenv(name);
+    return value != nullptr && *value != '\0';
+  };
+  return is_set("DISPLAY") || is_set("WAYLAND_DISPLAY");
+}
+
+// What a browser has to say is none of our business.
+void open_browser(const std::string& address) {
+  std::string program = "xdg-open", argument = address;
+  char* words[] = {program.data(), argument.data(), nullptr};
+  posix_spawn_file_actions_t actions;
+  posix_spawn_file_actions_init(&actions);
+  for (const int stream : {0, 1, 2}) {
+    posix_spawn_file_actions_addopen(&actions, stream, "/dev/null", stream == 0 ? 0 : 1, 0);
+  }
+  pid_t child = 0;
+  posix_spawnp(&child, program.c_str(), &actions, nullptr, words, environ);
+  posix_spawn_file_actions_destroy(&actions);
+}
+
+}  // namespace
+
+int run_view(const Arguments& arguments) {
+  const std::string& input = arguments.positionals[0];
+  view::ServerSettings server_settings = make_server_settings(arguments);
+  view::ViewRendererSettings renderer_settings;
+  renderer_settings.threads = threads_of(arguments);
+  renderer_settings.upload = server_settings.allow_upload;
+  renderer_settings.trace_below_ms = kTraceBelowMs;
+  if (const auto given = find_given(arguments, "--trace-below")) {
+    renderer_settings.trace_below_ms = parse_real(*given, {0, 1e9});
+  }
+  renderer_settings.open = [&arguments](const std::filesystem::path& file,
+                                        const std::string& name) {
+    return open_model(file, name, arguments);
+  };
+  with_rounding_options({}, arguments);  // checked before a long file is read
+
+  Console console(arguments);
+  view::ViewModel model = make_model(load_input(input, load_options_of(arguments)),
+                                     input == "-" ? "" : input, arguments);
+  for (const std::string& note : model.scene.notes) console.report(note);
+  view::ViewServer server(std::move(model), std::move(renderer_settings),
+                          std::move(server_settings));
+  fmt::print("{}\n", server.address());
+  if (std::fflush(stdout) != 0) throw Error(Error::Kind::failed, "stdout", "can't be written");
+  console.report("open this address in a browser; Ctrl-C ends it");
+  if (!arguments.has("--no-browser") && has_desktop()) open_browser(server.address());
+  server.run();
+  return 0;
+}
+
+}  // namespace arris::program

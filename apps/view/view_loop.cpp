@@ -1,0 +1,326 @@
+#include "view/view_loop.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <exception>
+#include <iterator>
+#include <variant>
+
+#include "arris/error.h"
+#include "io/picture_file.h"
+#include "render/camera.h"
+#include "render/prepared_scene.h"
+#include "view/scene_file.h"
+#include "view/view_report.h"
+
+namespace arris::view {
+namespace {
+
+constexpr auto kStateInterval = std::chrono::milliseconds(500);
+constexpr auto kSceneInterval = std::chrono::milliseconds(100);
+// Clients that take nothing don't keep the view from getting finer.
+constexpr auto kUnreadyWait = std::chrono::milliseconds(250);
+
+bool is_move(const MessageKind& what) {
+  if (const auto* object = std::get_if<SetObject>(&what)) return object->world_from_object.has_value();
+  return std::holds_alternative<SetCamera>(what);
+}
+
+}  // namespace
+
+ViewRenderer::Loop::Loop(ViewModel model, ViewRendererSettings settings)
+    : settings_(std::move(settings)), encoder_(settings_.threads) {
+  auto shared = std::make_shared<const ViewModel>(std::move(model));
+  desired_ = first_edits(*shared);
+  view_ = build_view(shared, desired_, build_settings());
+}
+
+ViewRenderer::Loop::~Loop() {
+  stopped_ = true;
+  {
+    const std::lock_guard lock(mutex_);
+    woken_ = true;
+  }
+  wake_.notify_all();
+  if (thread_.joinable()) thread_.join();
+}
+
+void ViewRenderer::Loop::start(ViewOutputs outputs) {
+  outputs_ = std::move(outputs);
+  thread_ = std::thread([this] { run(); });
+}
+
+BuildSettings ViewRenderer::Loop::build_settings() const {
+  return {settings_.threads, settings_.trace_below_ms, &stopped_};
+}
+
+// What any thread may call.
+
+void ViewRenderer::Loop::post(std::function<void()> task) {
+  {
+    const std::lock_guard lock(mutex_);
+    tasks_.push_back(std::move(task));
+    woken_ = true;
+  }
+  wake_.notify_all();
+}
+
+bool ViewRenderer::Loop::put(Input input) {
+  {
+    const std::lock_guard lock(mutex_);
+    if (!mailbox_.put(std::move(input))) return false;
+    woken_ = true;
+  }
+  wake_.notify_all();
+  return true;
+}
+
+void ViewRenderer::Loop::set_ready(bool ready) {
+  {
+    const std::lock_guard lock(mutex_);
+    if (ready_ == ready) return;
+    ready_ = ready;
+    woken_ = woken_ || ready;
+  }
+  if (ready) wake_.notify_all();
+}
+
+// The loop.
+
+void ViewRenderer::Loop::run() {
+  while (!stopped_) {
+    wait();
+    std::deque<std::function<void()>> tasks;
+    bool ready = false;
+    {
+      const std::lock_guard lock(mutex_);
+      tasks.swap(tasks_);
+      woken_ = false;
+      ready = ready_;
+    }
+    for (const auto& task : tasks) task();
+    tasks.clear();
+    take_inputs();
+    finish_build();
+    follow_edits();
+    poll_beam();
+    if (wants_frame() && Clock::now() >= frame_due(ready)) make_frame();
+    if (scene_dirty_ && Clock::now() >= scene_sent_ + kSceneInterval) send_scene();
+  }
+}
+
+bool ViewRenderer::Loop::wants_frame() const {
+  return !clients_.empty() && !settled_;
+}
+
+Clock::time_point ViewRenderer::Loop::frame_due(bool ready) const {
+  return ready ? pace_.next_frame()
+               : std::max(pace_.next_frame(), pace_.last_frame() + kUnreadyWait);
+}
+
+void ViewRenderer::Loop::wait() {
+  std::unique_lock lock(mutex_);
+  const auto is_woken = [&] { return woken_ || stopped_; };
+  std::optional<Clock::time_point> until;
+  if (wants_frame()) until = frame_due(ready_);
+  if (scene_dirty_) {
+    const Clock::time_point due = scene_sent_ + kSceneInterval;
+    until = until ? std::min(*until, due) : due;
+  }
+  if (until) {
+    wake_.wait_until(lock, *until, is_woken);
+  } else {
+    wake_.wait(lock, is_woken);
+  }
+}
+
+void ViewRenderer::Loop::take_inputs() {
+  std::vector<Input> inputs;
+  {
+    const std::lock_guard lock(mutex_);
+    inputs = mailbox_.take();
+  }
+  for (const Input& input : inputs) {
+    try {
+      apply(input);
+    } catch (const Error& error) {
+      add_marks(shown_, input.marks);
+      send("error",
+           error_message(input.marks.empty() ? std::nullopt : std::optional(input.marks.back().seq),
+                         error.what()),
+           input.client);
+      // The page is to show what is, not what was asked for.
+      send_scene_soon({});
+    }
+  }
+}
+
+void ViewRenderer::Loop::apply(const Input& input) {
+  const Clock::time_point now = Clock::now();
+  if (const auto* at = std::get_if<Pick>(&input.what)) return pick(input, *at);
+  if (std::holds_alternative<MakeBeam>(input.what)) {
+    add_marks(shown_, input.marks);
+    return start_beam();
+  }
+  if (const auto* quality = std::get_if<SetQuality>(&input.what)) {
+    quality_ = *quality;
+    add_marks(shown_, input.marks);
+    settled_ = false;
+    return;
+  }
+  apply_message(*view_.model, input.what, desired_);
+  const bool is_next_frame = std::holds_alternative<SetCamera>(input.what) ||
+                             std::holds_alternative<FrameView>(input.what) ||
+                             std::holds_alternative<SetOverlay>(input.what);
+  add_marks(is_next_frame ? shown_ : unasked_, input.marks);
+  settled_ = false;
+  if (is_move(input.what)) {
+    pace_.note_move(now);
+  } else {
+    pace_.hurry(now);
+  }
+  // A client knows the camera that it has set.
+  const bool is_camera = std::holds_alternative<SetCamera>(input.what);
+  if (!is_camera || clients_.size() > 1) {
+    send_scene_soon(is_camera ? std::optional(input.client) : std::nullopt);
+  }
+}
+
+void ViewRenderer::Loop::pick(const Input& input, const Pick& at) {
+  add_marks(shown_, input.marks);
+  const std::shared_ptr<const PreparedScene>& scene = view_.engine->scene();
+  if (!shooter_ || shooter_->first != scene) shooter_.emplace(scene, Shooter(*scene));
+  const CameraRays rays = make_camera_rays(desired_.camera, scene_of(*scene).image);
+  const Ray ray{desired_.camera.position, rays.corner + rays.step_x * at.x + rays.step_y * at.y};
+  const std::optional<Shot> shot = shooter_->second.shoot(ray);
+  std::optional<std::uint32_t> object;
+  if (shot) {
+    const auto& index_of = view_.staged.index_of;
+    const auto found = std::ranges::find(index_of, std::optional(shot->object.index));
+    if (found != index_of.end()) object = std::uint32_t(found - index_of.begin());
+  }
+  const auto seq =
+      input.marks.empty() ? std::nullopt : std::optional(input.marks.back().seq);
+  send("picked", picked_message(seq, shot, object), input.client);
+}
+
+void ViewRenderer::Loop::start_beam() {
+  ViewEdits sharp = desired_;
+  sharp.rounding.method = RoundMethod::none;
+  Scene scene = stage_view(*view_.model, sharp, RoundMethod::none).scene;
+  send("beam", beam_message(0, false, ""));
+  beam_.start(std::move(scene), settings_.threads, [this] { post([] {}); });
+}
+
+void ViewRenderer::Loop::poll_beam() {
+  if (const auto status = beam_.take_status()) {
+    send("beam", beam_message(status->done, status->ready, status->error));
+  }
+}
+
+// Clients.
+
+void ViewRenderer::Loop::join(ClientId client) {
+  clients_.push_back(client);
+  settled_ = false;
+  pace_.hurry(Clock::now());
+  send("scene",
+       scene_message(view_, desired_, settings_.upload),
+       client);
+  if (!busy_.empty()) send("busy", busy_message(busy_), client);
+}
+
+void ViewRenderer::Loop::leave(ClientId client) {
+  std::erase(clients_, client);
+  const auto is_theirs = [&](const InputMark& mark) { return mark.client == client; };
+  std::erase_if(shown_, is_theirs);
+  std::erase_if(unasked_, is_theirs);
+  std::erase_if(building_, is_theirs);
+  for (Asked& asked : asked_) std::erase_if(asked.marks, is_theirs);
+  const std::lock_guard lock(mutex_);
+  mailbox_.forget(client);
+}
+
+void ViewRenderer::Loop::send(const char* type, std::string text, std::optional<ClientId> to,
+                              std::optional<ClientId> but_not) {
+  outputs_.send_text({type, std::move(text), to, but_not});
+}
+
+// To each client that has sent one of them, with the newest seq of its own.
+void ViewRenderer::Loop::send_errors(const std::vector<InputMark>& marks, const std::string& what) {
+  if (marks.empty()) return send("error", error_message({}, what));
+  for (const InputMark& mark : marks) send("error", error_message(mark.seq, what), mark.client);
+}
+
+void ViewRenderer::Loop::send_scene_soon(std::optional<ClientId> but_not) {
+  scene_but_not_ = scene_dirty_ && scene_but_not_ != but_not ? std::nullopt : but_not;
+  scene_dirty_ = true;
+}
+
+void ViewRenderer::Loop::send_scene() {
+  scene_dirty_ = false;
+  scene_sent_ = Clock::now();
+  send("scene",
+       scene_message(view_, desired_, settings_.upload),
+       {}, scene_but_not_);
+}
+
+void ViewRenderer::Loop::set_busy(const std::string& what) {
+  if (busy_ == what) return;
+  busy_ = what;
+  send("busy", busy_message(busy_));
+}
+
+void ViewRenderer::Loop::send_state(bool now) {
+  const Clock::time_point time = Clock::now();
+  if (!now && time < state_sent_ + kStateInterval) return;
+  state_sent_ = time;
+  ViewState state;
+  state.stats = view_.engine->stats();
+  state.fps = pace_.fps(time);
+  state.frame_ms = pace_.frame_ms();
+  state.seconds = pace_.still_seconds(time);
+  const double pixels = double(view_.edits.size.width_px) * view_.edits.size.height_px;
+  state.new_samples = double(state.stats.new_points) / pixels;
+  state.converged = settled_;
+  send("state", state_message(state, *view_.engine->scene()));
+}
+
+// Files to save, and models to open.
+
+void ViewRenderer::Loop::save_picture(
+    const std::function<void(std::vector<std::uint8_t>)>& done) {
+  if (picture_ == nullptr) make_pictures();
+  SaveOptions options;
+  options.exposure = view_.model->scene.image.exposure;
+  done(encode_picture({*picture_, {}}, PictureFormat::png, options));
+}
+
+void ViewRenderer::Loop::save_scene(const SceneSaved& done) {
+  std::string text;
+  try {
+    text = make_scene_file(*view_.model, desired_);
+  } catch (const Error& error) {
+    return done({}, error.what());
+  }
+  done(std::move(text), "");
+}
+
+void ViewRenderer::Loop::save_beam(const std::function<void(std::vector<std::uint8_t>)>& done) {
+  done(beam_.picture());
+}
+
+void ViewRenderer::Loop::open(std::filesystem::path file, std::string name,
+                              std::function<void(const std::string&)> done) {
+  if (next_open_ && next_open_->done) next_open_->done("another model was opened meanwhile");
+  next_open_ = OpenRequest{std::move(file), std::move(name), false, std::move(done)};
+}
+
+void ViewRenderer::Loop::reload() {
+  const ViewModel& model = *view_.model;
+  if (model.file.empty() || next_open_) return;
+  next_open_ = OpenRequest{model.file, model.name, true, nullptr};
+}
+
+}  // namespace arris::view

@@ -1,0 +1,135 @@
+// view_loop.h — ViewRenderer's inside: what is shown, what is asked for, and when the next frame is due
+#pragma once
+
+#include <atomic>
+#include <condition_variable>
+#include <deque>
+#include <map>
+#include <mutex>
+#include <string>
+#include <thread>
+#include <utility>
+#include <vector>
+
+#include "arris/image.h"
+#include "render/shoot.h"
+#include "view/background_job.h"
+#include "view/beam_worker.h"
+#include "view/frame_encoder.h"
+#include "view/frame_pace.h"
+#include "view/shown_view.h"
+#include "view/view_renderer.h"
+
+namespace arris::view {
+
+class ViewRenderer::Loop {
+ public:
+  Loop(ViewModel model, ViewRendererSettings settings);
+  ~Loop();
+
+  void start(ViewOutputs outputs);
+
+  // From any thread.
+  void post(std::function<void()> task);
+  bool put(Input input);
+  void set_ready(bool ready);
+
+  // Of the loop's own thread, posted.
+  void join(ClientId client);
+  void leave(ClientId client);
+  void save_picture(const std::function<void(std::vector<std::uint8_t>)>& done);
+  void save_scene(const SceneSaved& done);
+  void save_beam(const std::function<void(std::vector<std::uint8_t>)>& done);
+  void open(std::filesystem::path file, std::string name,
+            std::function<void(const std::string&)> done);
+  void reload();
+
+ private:
+  // What engines have been told and don't show yet.
+  struct Asked {
+    ViewEdits edits;
+    std::vector<InputMark> marks;
+  };
+  struct OpenRequest {
+    std::filesystem::path file;
+    std::string name;
+    bool keeps_edits = false;  // the same model again; else the file goes away
+    std::function<void(const std::string&)> done;
+  };
+
+  void run();
+  void wait();
+  void take_inputs();
+  void apply(const Input& input);
+  void pick(const Input& input, const Pick& at);
+  void start_beam();
+  void poll_beam();
+
+  void follow_edits();
+  void start_build();
+  void start_open();
+  void finish_build();
+  void take_view(ShownView view);
+  void tell_engines();
+  void note_shown_changes();
+  void undo_asked(const std::string& error);
+
+  [[nodiscard]] bool wants_frame() const;
+  [[nodiscard]] Clock::time_point frame_due(bool ready) const;
+  [[nodiscard]] bool is_shader_idle();
+  void make_frame();
+  void publish(bool moving, bool converged);
+  void make_pictures();
+  const Image& compose(const Image& main, const Image* right);
+  void send_state(bool now);
+  void send_scene();
+  void send_scene_soon(std::optional<ClientId> but_not);
+  void send_errors(const std::vector<InputMark>& marks, const std::string& what);
+  void send(const char* type, std::string text, std::optional<ClientId> to = {},
+            std::optional<ClientId> but_not = {});
+  void set_busy(const std::string& what);
+  [[nodiscard]] BuildSettings build_settings() const;
+
+  // What all threads look at.
+  std::mutex mutex_;
+  std::condition_variable wake_;
+  ViewMailbox mailbox_;
+  std::deque<std::function<void()>> tasks_;
+  bool ready_ = true, woken_ = false;
+  std::atomic<bool> stopped_ = false;
+
+  ViewRendererSettings settings_;
+  ViewOutputs outputs_;
+  FrameEncoder encoder_;
+  SetQuality quality_;
+
+  ShownView view_;
+  ViewEdits desired_;
+  std::vector<InputMark> unasked_;  // of inputs that `desired_` has and no engine or build yet
+  std::deque<Asked> asked_;
+  std::vector<InputMark> shown_;
+  std::vector<InputMark> building_;
+  ViewEdits built_;  // what is being built
+  BackgroundJob<ShownView> build_;
+  std::optional<OpenRequest> opening_;    // being built
+  std::optional<OpenRequest> next_open_;
+  std::string busy_;
+
+  const Image* picture_ = nullptr;  // of the last frame
+  Image composed_;
+  std::optional<std::pair<std::shared_ptr<const PreparedScene>, Shooter>> shooter_;
+  BeamWorker beam_;
+
+  FramePace pace_;
+  bool settled_ = false;  // nothing to be seen would change
+  std::uint32_t frame_number_ = 0;
+  std::vector<ClientId> clients_;
+  bool scene_dirty_ = false;
+  std::optional<ClientId> scene_but_not_;
+  Clock::time_point scene_sent_, state_sent_;
+  double planned_points_ = 0;  // what the shader was asked for with the last frame
+
+  std::thread thread_;
+};
+
+}  // namespace arris::view

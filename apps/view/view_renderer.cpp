@@ -1,0 +1,53 @@
+#include "view/view_renderer.h"
+
+#include <utility>
+
+#include "view/view_loop.h"
+
+namespace arris::view {
+
+ViewRenderer::ViewRenderer(ViewModel model, ViewRendererSettings settings)
+    : loop_(std::make_unique<Loop>(std::move(model), std::move(settings))) {}
+ViewRenderer::~ViewRenderer() = default;
+
+void ViewRenderer::start(ViewOutputs outputs) {
+  loop_->start(std::move(outputs));
+}
+
+void ViewRenderer::join(ClientId client) {
+  loop_->post([loop = loop_.get(), client] { loop->join(client); });
+}
+void ViewRenderer::leave(ClientId client) {
+  loop_->post([loop = loop_.get(), client] { loop->leave(client); });
+}
+
+bool ViewRenderer::put(ClientId client, const ClientMessage& message) {
+  Input input{client, message.what, {}};
+  if (message.seq) input.marks.push_back({client, *message.seq, Clock::now()});
+  return loop_->put(std::move(input));
+}
+
+void ViewRenderer::set_ready(bool ready) {
+  loop_->set_ready(ready);
+}
+
+void ViewRenderer::save_picture(std::function<void(std::vector<std::uint8_t>)> done) {
+  loop_->post([loop = loop_.get(), done = std::move(done)] { loop->save_picture(done); });
+}
+void ViewRenderer::save_scene(SceneSaved done) {
+  loop_->post([loop = loop_.get(), done = std::move(done)] { loop->save_scene(done); });
+}
+void ViewRenderer::save_beam(std::function<void(std::vector<std::uint8_t>)> done) {
+  loop_->post([loop = loop_.get(), done = std::move(done)] { loop->save_beam(done); });
+}
+
+void ViewRenderer::open(std::filesystem::path file, std::string name,
+                        std::function<void(const std::string&)> done) {
+  loop_->post([loop = loop_.get(), file = std::move(file), name = std::move(name),
+               done = std::move(done)] { loop->open(file, name, done); });
+}
+void ViewRenderer::reload() {
+  loop_->post([loop = loop_.get()] { loop->reload(); });
+}
+
+}  // namespace arris::view

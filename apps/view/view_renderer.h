@@ -1,0 +1,90 @@
+// view_renderer.h — the thread that makes the viewer's frames
+// What       takes the clients' inputs, changes the view by them, and makes frames while there is something to see:
+//            moving ones as they come, finer ones while the view stands still, none once it has converged or nobody
+//            looks. What takes long is prepared beside the frames: a scene, a model, a beam picture.
+// Guarantee  the newest input wins: however many come, the next frame shows all of them. A change that can't be made
+//            is answered by an error, and the view stays as it was.
+// Limits     bounded memory whatever clients send: view_mailbox.h
+// Errors     the constructor throws what loading and preparing throw; all later ones become messages
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "view/view_mailbox.h"
+#include "view/view_stage.h"
+
+namespace arris::view {
+
+struct ViewFrame {
+  std::uint32_t number = 0;
+  PictureSize size;
+  bool moving = false, converged = false;
+  std::uint32_t samples = 0;
+  std::vector<InputMark> shown;  // the newest input of each client that it shows
+  std::vector<std::uint8_t> jpeg;
+};
+
+struct ViewText {
+  std::string type, text;
+  std::optional<ClientId> to;      // empty: all
+  std::optional<ClientId> but_not;
+};
+
+// Called by the renderer's thread.
+struct ViewOutputs {
+  std::function<void(std::shared_ptr<const ViewFrame>)> send_frame;
+  std::function<void(ViewText)> send_text;
+};
+
+using OpenModel =
+    std::function<ViewModel(const std::filesystem::path& file, const std::string& name)>;
+
+// A scene file, or why there is none.
+using SceneSaved = std::function<void(std::string toml, const std::string& error)>;
+
+struct ViewRendererSettings {
+  int threads = 0;
+  double trace_below_ms = 16;
+  bool upload = false;  // only said to clients
+  OpenModel open;       // throws; called in another thread
+};
+
+class ViewRenderer {
+ public:
+  ViewRenderer(ViewModel model, ViewRendererSettings settings);
+  ViewRenderer(const ViewRenderer&) = delete;
+  ViewRenderer& operator=(const ViewRenderer&) = delete;
+  // Stops, and waits for what is being done; no output follows.
+  ~ViewRenderer();
+
+  void start(ViewOutputs outputs);
+
+  // These may be called from any thread, and wait for nothing.
+  void join(ClientId client);
+  void leave(ClientId client);
+  // False: too many inputs wait.
+  bool put(ClientId client, const ClientMessage& message);
+  // Whether there is a client that takes a frame now.
+  void set_ready(bool ready);
+  // `done` is called by the renderer's thread.
+  void save_picture(std::function<void(std::vector<std::uint8_t> png)> done);
+  void save_scene(SceneSaved done);
+  void save_beam(std::function<void(std::vector<std::uint8_t> png)> done);  // empty: there is none
+  // error: empty if the model is shown now.
+  void open(std::filesystem::path file, std::string name,
+            std::function<void(const std::string& error)> done);
+  // The model's file has changed.
+  void reload();
+
+ private:
+  class Loop;
+  std::unique_ptr<Loop> loop_;
+};
+
+}  // namespace arris::view

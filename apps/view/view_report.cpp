@@ -1,0 +1,180 @@
+#include "view/view_report.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+#include <variant>
+
+#include "render/prepared_scene.h"
+#include "scene/material_presets.h"
+
+namespace arris::view {
+namespace {
+
+using nlohmann::json;
+
+std::string to_text(const json& value) {
+  return value.dump(-1, ' ', false, json::error_handler_t::replace);
+}
+
+json to_json(Vec3d v) {
+  return {v.x, v.y, v.z};
+}
+
+json to_json(const Camera& camera) {
+  return {{"position", to_json(camera.position)},
+          {"target", to_json(camera.target)},
+          {"up", to_json(camera.up)},
+          {"fov", camera.fov_deg}};
+}
+
+json to_json(const Affine3d& m) {
+  const auto& [x, y, z] = m.linear;
+  const Vec3d& t = m.translation;
+  return {{x.x, y.x, z.x, t.x}, {x.y, y.y, z.y, t.y}, {x.z, y.z, z.z, t.z}, {0, 0, 0, 1}};
+}
+
+struct RadiusValue {
+  json operator()(AutoRadius) const { return "auto"; }
+  json operator()(double radius) const { return radius; }
+  json operator()(PercentOfInradius radius) const { return fmt::format("{:g}%", radius.percent); }
+};
+
+json to_json(const RoundingSettings& rounding) {
+  return {{"radius", std::visit(RadiusValue{}, rounding.radius)},
+          {"edges", name_of(rounding.edges)},
+          {"min_angle", degrees(rounding.min_angle)},
+          {"method", name_of(rounding.method)}};
+}
+
+json to_json(const PictureSize& size) {
+  return {size.width_px, size.height_px};
+}
+
+double rounded_radius(const PreparedScene& prepared, std::optional<std::uint32_t> index) {
+  if (!index) return 0;
+  for (const RoundingSummary& summary : prepare_stats(prepared).rounding) {
+    if (summary.object_index == *index) return summary.radius;
+  }
+  return 0;
+}
+
+json object_json(const ViewModel& model, const ViewEdits& edits, std::size_t i,
+                 const Bounds& bounds) {
+  const Object& object = model.scene.objects[i];
+  const ObjectEdit& edit = edits.objects[i];
+  json out{{"id", i},
+           {"name", object.name},
+           {"triangles", object.csg ? 0 : model.scene.meshes[object.mesh.index].triangles.size()},
+           {"visible", edit.visible},
+           {"radius", nullptr},
+           {"matrix", to_json(edit.world_from_object)}};
+  if (edit.rounding) out["radius"] = std::visit(RadiusValue{}, edit.rounding->radius);
+  const bool is_there = !bounds.is_empty();
+  out["center"] = to_json(is_there ? bounds.center() : Vec3d());
+  out["size"] = to_json(is_there ? bounds.upper - bounds.lower : Vec3d());
+  return out;
+}
+
+}  // namespace
+
+std::string scene_message(const ShownView& view, const ViewEdits& edits, bool upload) {
+  const ViewModel& model = *view.model;
+  json objects = json::array();
+  Bounds all;
+  for (std::size_t i = 0; i < edits.objects.size(); ++i) {
+    const Bounds bounds =
+        moved_bounds(view.bounds[i], model.scene.objects[i].world_from_object,
+                     edits.objects[i].world_from_object);
+    all.add(bounds);
+    objects.push_back(object_json(model, edits, i, bounds));
+    objects.back()["rounded"] = rounded_radius(*view.engine->scene(), view.staged.index_of[i]);
+  }
+  json out{{"type", "scene"},
+           {"name", model.name},
+           {"camera", to_json(edits.camera)},
+           {"up", to_json(model.scene.up)},
+           {"rounding", to_json(edits.rounding)},
+           {"lighting", name_of(edits.lighting)},
+           {"strength", edits.strength},
+           {"rotation", edits.rotation_deg},
+           {"material", nullptr},
+           {"materials", material_preset_names()},
+           {"ground", edits.ground},
+           {"shader", name_of(edits.shader)},
+           {"compare", nullptr},
+           {"overlay", edits.overlay},
+           {"upload", upload},
+           {"objects", std::move(objects)},
+           {"size", to_json(edits.size)}};
+  if (edits.material) out["material"] = *edits.material;
+  if (edits.compared) {
+    out["compare"] = {{"method", name_of(*edits.compared)}, {"split", edits.split}};
+  }
+  const bool is_there = !all.is_empty();
+  out["bounds"] = {{"lower", to_json(is_there ? all.lower : Vec3d())},
+                   {"upper", to_json(is_there ? all.upper : Vec3d())}};
+  return to_text(out);
+}
+
+std::string state_message(const ViewState& state, const PreparedScene& prepared) {
+  const EdgePointStats& stats = state.stats;
+  const double pixels =
+      std::max(1.0, double(stats.classes.empty + stats.classes.simple + stats.classes.complex));
+  const PrepareStats& scene = prepare_stats(prepared);
+  return to_text({{"type", "state"},
+                  {"fps", state.fps},
+                  {"frame_ms", state.frame_ms},
+                  {"samples", stats.still_paths},
+                  {"seconds", state.seconds},
+                  {"new_samples", state.new_samples},
+                  {"integrator", stats.traced ? "traced" : "edge-point"},
+                  {"triangles", scene.triangles},
+                  {"rounded_edges", scene.rounded_edges},
+                  {"edges",
+                   {{"silhouette", stats.edges.silhouette},
+                    {"sharp", stats.edges.sharp},
+                    {"shadow", stats.edges.shadow}}},
+                  {"classes",
+                   {{"empty", double(stats.classes.empty) / pixels},
+                    {"simple", double(stats.classes.simple) / pixels},
+                    {"complex", double(stats.classes.complex) / pixels}}},
+                  {"converged", state.converged}});
+}
+
+std::string picked_message(std::optional<std::uint32_t> seq, const std::optional<Shot>& shot,
+                           std::optional<std::uint32_t> object) {
+  json out{{"type", "picked"},     {"id", nullptr},       {"position", nullptr},
+           {"normal", nullptr}, {"feature", nullptr}};
+  if (seq) out["seq"] = *seq;
+  if (object) out["id"] = *object;
+  if (shot) {
+    out["position"] = to_json(shot->position);
+    out["normal"] = to_json(shot->normal);
+    out["feature"] = name_of(shot->feature);
+  }
+  return to_text(out);
+}
+
+std::string beam_message(double done, bool ready, const std::string& error) {
+  json out{{"type", "beam"}, {"done", done}, {"ready", ready}};
+  if (!error.empty()) out["error"] = error;
+  return to_text(out);
+}
+
+std::string busy_message(const std::string& what) {
+  json out{{"type", "busy"}, {"what", nullptr}};
+  if (!what.empty()) out["what"] = what;
+  return to_text(out);
+}
+
+std::string error_message(std::optional<std::uint32_t> seq, const std::string& what) {
+  const std::size_t end = what.find("; ");
+  json out{{"type", "error"}, {"text", what.substr(0, end)}};
+  if (end != std::string::npos) out["remedy"] = what.substr(end + 2);
+  if (seq) out["seq"] = *seq;
+  return to_text(out);
+}
+
+}  // namespace arris::view

@@ -1,0 +1,34 @@
+// view_report.h — what the server says to the page, as text (docs/view-protocol.md)
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include "arris/edge_point.h"
+#include "arris/render.h"
+#include "render/shoot.h"
+#include "view/shown_view.h"
+
+namespace arris::view {
+
+// edits: what the view is to be, which may be ahead of what it shows. upload: whether models may be dropped.
+std::string scene_message(const ShownView& view, const ViewEdits& edits, bool upload);
+
+struct ViewState {
+  double fps = 0, frame_ms = 0, seconds = 0;
+  double new_samples = 0;  // part of the pixels
+  bool converged = false;
+  EdgePointStats stats;
+};
+std::string state_message(const ViewState& state, const PreparedScene& prepared);
+
+std::string picked_message(std::optional<std::uint32_t> seq, const std::optional<Shot>& shot,
+                           std::optional<std::uint32_t> object);
+std::string beam_message(double done, bool ready, const std::string& error);
+// Empty: the work has ended.
+std::string busy_message(const std::string& what);
+// What follows the first "; " is the remedy.
+std::string error_message(std::optional<std::uint32_t> seq, const std::string& what);
+
+}  // namespace arris::view

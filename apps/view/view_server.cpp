@@ -1,0 +1,237 @@
+#include "view/view_server.h"
+
+#include <fmt/format.h>
+#include <stdlib.h>  // mkdtemp
+
+#include <boost/asio/ip/address.hpp>
+#include <boost/asio/post.hpp>
+#include <csignal>
+#include <system_error>
+#include <utility>
+
+#include "arris/error.h"
+#include "view/access.h"
+#include "view/server_impl.h"
+
+namespace arris::view {
+namespace {
+
+using asio::ip::tcp;
+using boost::system::error_code;
+
+constexpr auto kWatchInterval = std::chrono::milliseconds(300);
+// A page that is loaded again leaves, too.
+constexpr auto kOnceGrace = std::chrono::milliseconds(1500);
+constexpr auto kCloseGrace = std::chrono::milliseconds(200);
+constexpr auto kAcceptPause = std::chrono::milliseconds(100);
+
+tcp::endpoint find_endpoint(const ServerSettings& settings, asio::io_context& context) {
+  error_code error;
+  const auto address = asio::ip::make_address(settings.host, error);
+  if (!error) return {address, settings.port};
+  tcp::resolver resolver(context);
+  const auto found = resolver.resolve(settings.host, std::to_string(settings.port),
+                                      tcp::resolver::passive, error);
+  if (error || found.empty()) {
+    throw Error(Error::Kind::input, "--host",
+                fmt::format("\"{}\" is no address of this machine; use 127.0.0.1 for this machine "
+                            "alone, 0.0.0.0 for all that can reach it",
+                            settings.host));
+  }
+  return found.begin()->endpoint();
+}
+
+std::optional<std::filesystem::file_time_type> time_of(const std::filesystem::path& file) {
+  std::error_code error;
+  const auto time = std::filesystem::last_write_time(file, error);
+  return error ? std::nullopt : std::optional(time);
+}
+
+}  // namespace
+
+ViewServer::Impl::Impl(ViewModel model, ViewRendererSettings renderer, ServerSettings settings)
+    : settings_(std::move(settings)), token_(make_token()) {
+  if (settings_.watch) shown_time_ = watched_time_ = time_of(settings_.watched);
+  listen();
+  renderer_ = std::make_unique<ViewRenderer>(std::move(model), std::move(renderer));
+}
+
+ViewServer::Impl::~Impl() {
+  renderer_.reset();
+  std::error_code error;
+  if (upload_folder_) std::filesystem::remove_all(*upload_folder_, error);
+}
+
+void ViewServer::Impl::listen() {
+  tcp::endpoint endpoint = find_endpoint(settings_, context_);
+  error_code error;
+  const auto bind = [&] {
+    acceptor_.close(error);
+    acceptor_.open(endpoint.protocol(), error);
+    if (!error) acceptor_.set_option(asio::socket_base::reuse_address(true), error);
+    if (!error) acceptor_.bind(endpoint, error);
+    if (!error) acceptor_.listen(asio::socket_base::max_listen_connections, error);
+  };
+  bind();
+  if (error == asio::error::address_in_use && settings_.or_any_port) {
+    endpoint.port(0);
+    bind();
+  }
+  if (!error) return;
+  throw Error(Error::Kind::failed, fmt::format("{}:{}", settings_.host, settings_.port),
+              fmt::format("can't be listened at ({}); use another --port, or --host 127.0.0.1",
+                          error.message()));
+}
+
+std::string ViewServer::Impl::address() const {
+  const tcp::endpoint endpoint = acceptor_.local_endpoint();
+  std::string host = endpoint.address().to_string();
+  if (endpoint.address().is_unspecified()) host = endpoint.address().is_v6() ? "::1" : "127.0.0.1";
+  if (host.find(':') != std::string::npos) host = "[" + host + "]";
+  return fmt::format("http://{}:{}/?t={}", host, endpoint.port(), token_);
+}
+
+void ViewServer::Impl::run() {
+  wait_for_signal();
+  accept();
+  if (settings_.watch) watch();
+  renderer_->start({[this](std::shared_ptr<const ViewFrame> frame) {
+                      asio::post(context_, [this, frame = std::move(frame)] {
+                        for (const auto& [id, client] : clients_) {
+                          if (const auto session = client.lock()) session->put(frame);
+                        }
+                        update_ready();
+                      });
+                    },
+                    [this](ViewText text) {
+                      asio::post(context_, [this, text = std::move(text)] {
+                        for (const auto& [id, client] : clients_) {
+                          if (const auto session = client.lock()) session->put(text);
+                        }
+                      });
+                    }});
+  context_.run();
+}
+
+void ViewServer::Impl::stop() {
+  asio::post(context_, [this] { close_all(); });
+}
+
+void ViewServer::Impl::wait_for_signal() {
+  signals_.add(SIGINT);
+  signals_.add(SIGTERM);
+  signals_.async_wait([this](error_code error, int) {
+    if (!error) close_all();
+  });
+}
+
+// Pages are told, and given a moment to hear it.
+void ViewServer::Impl::close_all() {
+  error_code ignored;
+  acceptor_.close(ignored);
+  for (const auto& [id, client] : clients_) {
+    if (const auto session = client.lock()) session->close();
+  }
+  end_timer_.expires_after(clients_.empty() ? std::chrono::milliseconds(0) : kCloseGrace);
+  end_timer_.async_wait([this](error_code) { context_.stop(); });
+}
+
+void ViewServer::Impl::accept() {
+  acceptor_.async_accept([this](error_code error, tcp::socket socket) {
+    if (!acceptor_.is_open()) return;
+    if (error) {
+      // Too many open files, perhaps: others end.
+      auto timer = std::make_shared<asio::steady_timer>(context_, kAcceptPause);
+      timer->async_wait([this, timer](error_code) { accept(); });
+      return;
+    }
+    if (add_connection()) start_http_session(*this, std::move(socket));
+    accept();
+  });
+}
+
+bool ViewServer::Impl::add_connection() {
+  if (connections_ >= kMostConnections) return false;
+  ++connections_;
+  return true;
+}
+
+ClientId ViewServer::Impl::add_client(std::weak_ptr<ClientSession> session) {
+  const ClientId client = next_client_++;
+  clients_.emplace(client, std::move(session));
+  end_timer_.cancel();
+  renderer_->join(client);
+  update_ready();
+  return client;
+}
+
+void ViewServer::Impl::remove_client(ClientId client) {
+  if (clients_.erase(client) == 0) return;
+  renderer_->leave(client);
+  update_ready();
+  if (settings_.once && clients_.empty()) end_soon();
+}
+
+void ViewServer::Impl::end_soon() {
+  end_timer_.expires_after(kOnceGrace);
+  end_timer_.async_wait([this](error_code error) {
+    if (!error && clients_.empty()) close_all();
+  });
+}
+
+void ViewServer::Impl::update_ready() {
+  bool ready = false;
+  for (const auto& [id, client] : clients_) {
+    const auto session = client.lock();
+    ready = ready || (session && session->is_ready());
+  }
+  renderer_->set_ready(ready);
+}
+
+// Twice the same time, so that the file is not read while it is being written.
+void ViewServer::Impl::watch() {
+  watch_timer_.expires_after(kWatchInterval);
+  watch_timer_.async_wait([this](error_code error) {
+    if (error) return;
+    const auto now = time_of(settings_.watched);
+    if (now && now == watched_time_ && now != shown_time_) {
+      shown_time_ = now;
+      renderer_->reload();
+    }
+    watched_time_ = now;
+    watch();
+  });
+}
+
+bool ViewServer::Impl::begin_upload() {
+  if (uploading_) return false;
+  uploading_ = true;
+  return true;
+}
+
+std::filesystem::path ViewServer::Impl::upload_file(const std::string& extension) {
+  if (!upload_folder_) {
+    std::string folder = (std::filesystem::temp_directory_path() / "arris-view-XXXXXX").string();
+    if (::mkdtemp(folder.data()) == nullptr) {
+      throw Error(Error::Kind::failed, folder, "can't be made");
+    }
+    upload_folder_ = folder;
+  }
+  return *upload_folder_ / fmt::format("model{}{}", uploads_++, extension);
+}
+
+ViewServer::ViewServer(ViewModel model, ViewRendererSettings renderer, ServerSettings settings)
+    : impl_(std::make_unique<Impl>(std::move(model), std::move(renderer), std::move(settings))) {}
+ViewServer::~ViewServer() = default;
+
+std::string ViewServer::address() const {
+  return impl_->address();
+}
+void ViewServer::run() {
+  impl_->run();
+}
+void ViewServer::stop() {
+  impl_->stop();
+}
+
+}  // namespace arris::view

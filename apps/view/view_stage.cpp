@@ -1,0 +1,355 @@
+#include "view/view_stage.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "arris/error.h"
+#include "base/nearest_name.h"
+#include "base/utf8_text.h"
+#include "render/camera.h"
+#include "render/ground_frame.h"
+#include "scene/material_presets.h"
+#include "scene/validate_placement.h"
+
+namespace arris::view {
+namespace {
+
+bool is_same(const Camera& a, const Camera& b) {
+  return a.position == b.position && a.target == b.target && a.up == b.up && a.fov_deg == b.fov_deg;
+}
+
+std::optional<Lighting> lighting_of(LightChoice choice) {
+  switch (choice) {
+    case LightChoice::studio:
+      return Lighting::studio;
+    case LightChoice::sky:
+      return Lighting::sky;
+    case LightChoice::white:
+      return Lighting::white;
+    case LightChoice::file:
+      break;
+  }
+  return std::nullopt;
+}
+
+LightChoice choice_of(std::optional<Lighting> lighting) {
+  if (!lighting) return LightChoice::file;
+  switch (*lighting) {
+    case Lighting::studio:
+      return LightChoice::studio;
+    case Lighting::sky:
+      return LightChoice::sky;
+    case Lighting::white:
+      return LightChoice::white;
+  }
+  return LightChoice::file;
+}
+
+StageOptions stage_options(const ViewModel& model, const ViewEdits& edits) {
+  StageOptions stage = model.stage;
+  stage.lighting = lighting_of(edits.lighting);
+  stage.ground = edits.ground;
+  stage.material.reset();
+  if (edits.material) stage.material = find_material_preset(*edits.material);
+  return stage;
+}
+
+Vec3d rotate_about(Vec3d v, Vec3d axis, double angle) {
+  const Vec3d k = normalize(axis);
+  return v * std::cos(angle) + cross(k, v) * std::sin(angle) +
+         k * (dot(k, v) * (1 - std::cos(angle)));
+}
+
+// Counter-clockwise seen from above.
+struct TurnedLight {
+  double strength, angle;
+
+  Environment operator()(ConstantEnvironment e) const {
+    e.radiance *= float(strength);
+    return e;
+  }
+  Environment operator()(SkyEnvironment e) const {
+    e.strength *= strength;
+    e.sun_direction = rotate_about(e.sun_direction, e.up, angle);
+    return e;
+  }
+  Environment operator()(HdrEnvironment e) const {
+    e.strength *= strength;
+    e.rotation += angle;
+    return e;
+  }
+  Environment operator()(StudioEnvironment e) const {
+    e.strength *= strength;
+    e.rotation += angle;
+    return e;
+  }
+};
+
+void scale_light(Light& light, float strength) {
+  struct Scale {
+    float by;
+    void operator()(PointLight& l) const { l.intensity *= by; }
+    void operator()(SpotLight& l) const { l.intensity *= by; }
+    void operator()(DirectionalLight& l) const { l.irradiance *= by; }
+    void operator()(AreaLight& l) const { l.radiance *= by; }
+  };
+  std::visit(Scale{strength}, light);
+}
+
+void apply_light_edits(Scene& scene, const ViewEdits& edits) {
+  if (edits.strength == 1 && edits.rotation_deg == 0) return;
+  scene.environment =
+      std::visit(TurnedLight{edits.strength, radians(edits.rotation_deg)}, *scene.environment);
+  for (Light& light : scene.lights) scale_light(light, float(edits.strength));
+}
+
+RoundingSettings with_method(RoundingSettings settings, std::optional<RoundMethod> method) {
+  if (method) settings.method = *method;
+  return settings;
+}
+
+void check_object(const ViewModel& model, std::uint32_t id) {
+  if (id < model.scene.objects.size()) return;
+  throw Error(Error::Kind::input, "",
+              fmt::format("there is no object {}; the model has {}", id, model.scene.objects.size()));
+}
+
+void check_camera(const ViewModel& model, const Camera& camera) {
+  Scene seen;
+  seen.image = model.scene.image;
+  seen.camera = camera;
+  const std::vector<std::string> problems = validate_placement(seen);
+  if (!problems.empty()) {
+    throw Error(Error::Kind::input, "", fmt::format("{}", fmt::join(problems, "\n")));
+  }
+}
+
+// Changes of one kind of message each.
+struct Apply {
+  const ViewModel& model;
+  ViewEdits& edits;
+
+  void operator()(const Hello& m) const { edits.size = m.size; }
+  void operator()(const SetSize& m) const { edits.size = m.size; }
+  void operator()(const SetCamera& m) const {
+    check_camera(model, m.camera);
+    edits.camera = m.camera;
+  }
+  void operator()(const FrameView& m) const {
+    const Camera camera = frame_view(model, edits, m.from);
+    check_camera(model, camera);
+    edits.camera = camera;
+  }
+  void operator()(const SetRounding& m) const {
+    RoundingSettings& rounding = edits.rounding;
+    rounding.method = m.method.value_or(rounding.method);
+    rounding.radius = m.radius.value_or(rounding.radius);
+    rounding.edges = m.edges.value_or(rounding.edges);
+    rounding.min_angle = m.min_angle.value_or(rounding.min_angle);
+    for (ObjectEdit& object : edits.objects) {
+      if (object.has_edited_radius) set_radius(object, object.rounding->radius);
+    }
+  }
+  void operator()(const SetObject& m) const {
+    check_object(model, m.id);
+    ObjectEdit& object = edits.objects[m.id];
+    object.visible = m.visible.value_or(object.visible);
+    object.world_from_object = m.world_from_object.value_or(object.world_from_object);
+    if (!m.radius) return;
+    object.has_edited_radius = m.radius->has_value();
+    object.rounding.reset();
+    if (*m.radius) set_radius(object, **m.radius);
+  }
+  void operator()(const Isolate& m) const {
+    if (m.id) check_object(model, *m.id);
+    for (std::size_t i = 0; i < edits.objects.size(); ++i) {
+      edits.objects[i].visible = !m.id || *m.id == i;
+    }
+  }
+  void operator()(const SetLight& m) const {
+    edits.lighting = m.lighting.value_or(edits.lighting);
+    edits.strength = m.strength.value_or(edits.strength);
+    edits.rotation_deg = m.rotation_deg.value_or(edits.rotation_deg);
+  }
+  void operator()(const SetMaterial& m) const {
+    if (m.name && !find_material_preset(*m.name)) {
+      throw Error(Error::Kind::input, "",
+                  fmt::format("{} is no material{}", in_quotes(*m.name),
+                              did_you_mean(*m.name, material_preset_names())));
+    }
+    edits.material = m.name;
+  }
+  void operator()(const SetGround& m) const { edits.ground = m.on; }
+  void operator()(const SetShader& m) const { edits.shader = m.shader; }
+  void operator()(const Compare& m) const {
+    edits.compared = m.method;
+    edits.split = m.split;
+  }
+  void operator()(const SetOverlay& m) const { edits.overlay = m.on; }
+  void operator()(const Ack&) const {}
+  void operator()(const Pick&) const {}
+  void operator()(const MakeBeam&) const {}
+  void operator()(const SetQuality&) const {}
+
+ private:
+  void set_radius(ObjectEdit& object, const Radius& radius) const {
+    object.rounding = edits.rounding;
+    object.rounding->radius = radius;
+  }
+};
+
+}  // namespace
+
+ViewEdits first_edits(const ViewModel& model) {
+  ViewEdits edits;
+  Scene staged = model.scene;
+  const StagingReport report = stage_model(staged, model.stage);
+  if (!report.problem.empty()) throw Error(Error::Kind::input, model.name, report.problem);
+  edits.size = {std::clamp(model.scene.image.width_px, kLeastSize.width_px, kMostSize.width_px),
+                std::clamp(model.scene.image.height_px, kLeastSize.height_px, kMostSize.height_px)};
+  edits.camera = *staged.camera;
+  edits.rounding = model.scene.rounding.value_or(RoundingSettings{});
+  edits.lighting = choice_of(model.stage.lighting);
+  if (edits.lighting == LightChoice::file && !model.scene.environment &&
+      model.scene.lights.empty()) {
+    edits.lighting = LightChoice::studio;
+  }
+  if (model.stage.material) edits.material = model.stage.material->name;
+  edits.ground = report.ground_triangles > 0;
+  edits.shader = model.shader;
+  for (const Object& object : model.scene.objects) {
+    edits.objects.push_back({true, object.rounding, false, object.world_from_object});
+  }
+  return edits;
+}
+
+void apply_message(const ViewModel& model, const MessageKind& message, ViewEdits& edits) {
+  std::visit(Apply{model, edits}, message);
+}
+
+ViewEdits carry_over(const ViewEdits& first_before, const ViewEdits& edits, ViewEdits first_now) {
+  ViewEdits out = std::move(first_now);
+  const auto carry = [](const auto& before, const auto& edited, auto& now) {
+    if (!(edited == before)) now = edited;
+  };
+  if (!is_same(edits.camera, first_before.camera)) out.camera = edits.camera;
+  carry(first_before.rounding, edits.rounding, out.rounding);
+  carry(first_before.lighting, edits.lighting, out.lighting);
+  carry(first_before.strength, edits.strength, out.strength);
+  carry(first_before.rotation_deg, edits.rotation_deg, out.rotation_deg);
+  carry(first_before.material, edits.material, out.material);
+  carry(first_before.ground, edits.ground, out.ground);
+  carry(first_before.shader, edits.shader, out.shader);
+  if (out.objects.size() == edits.objects.size()) {
+    for (std::size_t i = 0; i < out.objects.size(); ++i) {
+      carry(first_before.objects[i], edits.objects[i], out.objects[i]);
+    }
+  }
+  out.size = edits.size;
+  out.compared = edits.compared;
+  out.split = edits.split;
+  out.overlay = edits.overlay;
+  return out;
+}
+
+Camera frame_view(const ViewModel& model, const ViewEdits& edits, FrameView::From from) {
+  Scene visible = model.scene;
+  visible.image.width_px = edits.size.width_px;
+  visible.image.height_px = edits.size.height_px;
+  visible.objects.clear();
+  for (std::size_t i = 0; i < edits.objects.size(); ++i) {
+    if (!edits.objects[i].visible) continue;
+    visible.objects.push_back(model.scene.objects[i]);
+    visible.objects.back().world_from_object = edits.objects[i].world_from_object;
+  }
+  if (visible.objects.empty()) return edits.camera;
+  const double fov = edits.camera.fov_deg;
+  const GroundFrame frame = make_ground_frame(model.scene.up);
+  switch (from) {
+    case FrameView::From::here:
+      return frame_scene_from(visible, edits.camera.position - edits.camera.target,
+                              edits.camera.up, fov);
+    case FrameView::From::front:
+      return frame_scene_from(visible, -frame.north, frame.up, fov);
+    case FrameView::From::right:
+      return frame_scene_from(visible, frame.east, frame.up, fov);
+    case FrameView::From::top:
+      return frame_scene_from(visible, frame.up, frame.north, fov);
+    case FrameView::From::iso:
+      break;
+  }
+  return frame_scene(visible, fov);
+}
+
+StagedView stage_view(const ViewModel& model, const ViewEdits& edits,
+                      std::optional<RoundMethod> method) {
+  StagedView out;
+  Scene& scene = out.scene;
+  scene = model.scene;
+  // All frames are of now.
+  scene.animation = {};
+  stage_model(scene, stage_options(model, edits));
+  apply_light_edits(scene, edits);
+  scene.image.width_px = edits.size.width_px;
+  scene.image.height_px = edits.size.height_px;
+  scene.camera = edits.camera;
+  scene.rounding = with_method(edits.rounding, method);
+  std::vector<Object> staged = std::exchange(scene.objects, {});
+  for (std::size_t i = 0; i < staged.size(); ++i) {
+    const bool is_own = i < edits.objects.size();  // else the ground
+    if (is_own) {
+      const ObjectEdit& edit = edits.objects[i];
+      out.index_of.emplace_back();
+      if (!edit.visible) continue;
+      out.index_of.back() = std::uint32_t(scene.objects.size());
+      staged[i].world_from_object = edit.world_from_object;
+      staged[i].rounding = edit.rounding;
+      if (edit.rounding) staged[i].rounding = with_method(*edit.rounding, method);
+    }
+    scene.objects.push_back(std::move(staged[i]));
+  }
+  return out;
+}
+
+ViewWork find_work(const ViewEdits& from, const ViewEdits& to) {
+  const auto is_prepared_alike = [](const ObjectEdit& a, const ObjectEdit& b) {
+    return a.visible == b.visible && a.rounding == b.rounding;
+  };
+  if (from.lighting != to.lighting || from.strength != to.strength ||
+      from.rotation_deg != to.rotation_deg || from.material != to.material ||
+      from.ground != to.ground ||
+      !std::ranges::equal(from.objects, to.objects, is_prepared_alike)) {
+    return ViewWork::prepare;
+  }
+  if (from.size != to.size || from.shader != to.shader || from.compared != to.compared) {
+    return ViewWork::new_engine;
+  }
+  if (from.rounding != to.rounding || from.objects != to.objects) return ViewWork::change;
+  if (!is_same(from.camera, to.camera)) return ViewWork::camera;
+  return from.split != to.split || from.overlay != to.overlay ? ViewWork::redraw : ViewWork::none;
+}
+
+std::vector<Bounds> first_bounds(const ViewModel& model) {
+  std::vector<Bounds> bounds;
+  for (const Object& object : model.scene.objects) {
+    bounds.push_back(world_bounds(model.scene, object));
+  }
+  return bounds;
+}
+
+Bounds moved_bounds(const Bounds& bounds, const Affine3d& before, const Affine3d& now) {
+  if (bounds.is_empty() || before == now) return bounds;
+  const Affine3d move = now * inverse(before);
+  Bounds moved;
+  for (int corner = 0; corner < 8; ++corner) {
+    moved.add(transform_point(move, {(corner & 1) != 0 ? bounds.upper.x : bounds.lower.x,
+                                     (corner & 2) != 0 ? bounds.upper.y : bounds.lower.y,
+                                     (corner & 4) != 0 ? bounds.upper.z : bounds.lower.z}));
+  }
+  return moved;
+}
+
+}  // namespace arris::view

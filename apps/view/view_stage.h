@@ -1,0 +1,93 @@
+// view_stage.h — what the viewer shows: a model as it was opened, and what has been changed since
+// What       ViewModel is what a file holds; ViewEdits are the changes, complete, so that any two states can be
+//            compared; stage_view() makes the scene to render from both, and find_work() says how much of it is new
+// Guarantee  same model and edits: same scene. The ground and the objects' numbers do not depend on what is visible or
+//            moved.
+// Errors     arris::Error, kind input
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "arris/edge_point.h"
+#include "arris/scene.h"
+#include "render/staging.h"
+#include "scene/scene_bounds.h"
+#include "view/view_protocol.h"
+
+namespace arris::view {
+
+struct ViewModel {
+  std::string name;            // to show
+  std::filesystem::path file;  // empty: it came through a pipe
+  bool is_scene_file = false;
+  Scene scene;         // with image settings and rounding as options ask for; not staged
+  StageOptions stage;  // lighting, ground, material and camera that options ask for
+  EdgePointShader shader = EdgePointShader::gi;
+};
+
+struct ObjectEdit {
+  bool visible = true;
+  std::optional<RoundingSettings> rounding;  // empty: the scene's
+  bool has_edited_radius = false;  // of `rounding`; the rest follows the scene's rounding
+  Affine3d world_from_object;
+  friend bool operator==(const ObjectEdit&, const ObjectEdit&) = default;
+};
+
+struct ViewEdits {
+  PictureSize size;
+  Camera camera;
+  RoundingSettings rounding;
+  LightChoice lighting = LightChoice::file;
+  double strength = 1, rotation_deg = 0;  // of the lights
+  std::optional<std::string> material;
+  bool ground = true;
+  EdgePointShader shader = EdgePointShader::gi;
+  std::vector<ObjectEdit> objects;  // as in the model
+  std::optional<RoundMethod> compared;
+  double split = 0.5;
+  bool overlay = false;
+};
+
+// As the model is when it is opened: framed, staged. Throws if there is no room for its camera or ground.
+ViewEdits first_edits(const ViewModel& model);
+
+// A change of one kind. Throws for objects and materials that are not there, and views that are none; `edits` is
+// then as before. Messages that change nothing of the scene do nothing.
+void apply_message(const ViewModel& model, const MessageKind& message, ViewEdits& edits);
+
+// The edits of a model whose file has been read again: what was changed by hand stays, all else is as the file is now.
+ViewEdits carry_over(const ViewEdits& first_before, const ViewEdits& edits, ViewEdits first_now);
+
+// The camera that shows all visible objects.
+Camera frame_view(const ViewModel& model, const ViewEdits& edits, FrameView::From from);
+
+struct StagedView {
+  Scene scene;
+  std::vector<std::optional<std::uint32_t>> index_of;  // by the model's objects: where they are in the scene
+};
+// method: instead of the edits' own, for comparison.
+StagedView stage_view(const ViewModel& model, const ViewEdits& edits,
+                      std::optional<RoundMethod> method = {});
+
+// What has to be done so that `to` is shown where `from` is. Each kind needs all below it.
+enum class ViewWork {
+  none,
+  redraw,      // split and overlay
+  camera,      // and nothing else
+  change,      // moves of objects, the rounding of the scene
+  new_engine,  // picture size, shader, comparison: what was prepared stays
+  prepare,     // all else
+};
+ViewWork find_work(const ViewEdits& from, const ViewEdits& to);
+
+// In the world, where the file has them, by objects.
+std::vector<Bounds> first_bounds(const ViewModel& model);
+// Of a box that was moved with an object.
+Bounds moved_bounds(const Bounds& bounds, const Affine3d& before, const Affine3d& now);
+
+}  // namespace arris::view

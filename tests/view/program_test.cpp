@@ -1,0 +1,127 @@
+// `arris view` as a program: its address, its options, its ends.
+#include <fcntl.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <spawn.h>
+#include <sys/wait.h>
+
+#include <csignal>
+#include <memory>
+#include <string>
+
+#include "program/run_program.h"
+#include "view/web_client.h"
+
+extern char** environ;
+
+namespace arris {
+namespace {
+
+using test::WebSocket;
+using testing::HasSubstr;
+using testing::StartsWith;
+
+class RunningView {
+ public:
+  RunningView(const test::Workplace& place, std::vector<std::string> words) {
+    words.insert(words.begin(), {ARRIS_BINARY_DIR "/arris", "view"});
+    for (const char* word : {"--no-browser", "--port", "0", "--threads", "1", "--size", "96x64"}) {
+      words.emplace_back(word);
+    }
+    std::vector<char*> pointers;
+    for (std::string& word : words) pointers.push_back(word.data());
+    pointers.push_back(nullptr);
+    int ends[2];
+    if (::pipe2(ends, O_CLOEXEC) != 0) throw std::runtime_error("no pipe");
+    posix_spawn_file_actions_t actions;
+    posix_spawn_file_actions_init(&actions);
+    posix_spawn_file_actions_adddup2(&actions, ends[1], 1);
+    posix_spawn_file_actions_addopen(&actions, 2, (place / "err.txt").c_str(),
+                                     O_WRONLY | O_CREAT | O_TRUNC, 0600);
+    if (::posix_spawn(&process_, words[0].c_str(), &actions, nullptr, pointers.data(), environ) !=
+        0) {
+      throw std::runtime_error("not started");
+    }
+    posix_spawn_file_actions_destroy(&actions);
+    ::close(ends[1]);
+    char c = 0;
+    while (::read(ends[0], &c, 1) == 1 && c != '\n') address_ += c;
+    ::close(ends[0]);
+  }
+  RunningView(const RunningView&) = delete;
+  RunningView& operator=(const RunningView&) = delete;
+  ~RunningView() {
+    if (process_ == 0) return;
+    ::kill(process_, SIGKILL);
+    wait();
+  }
+
+  [[nodiscard]] const std::string& address() const { return address_; }
+  [[nodiscard]] std::uint16_t port() const { return std::uint16_t(std::stoi(address_.substr(17))); }
+  [[nodiscard]] std::string token() const { return address_.substr(address_.find("t=") + 2); }
+  void signal(int number) const { ::kill(process_, number); }
+  int wait() {
+    int status = 0;
+    ::waitpid(process_, &status, 0);
+    process_ = 0;
+    return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+  }
+
+ private:
+  pid_t process_ = 0;
+  std::string address_;
+};
+
+TEST(ViewProgram, prints_its_address_and_ends_well_when_asked_to) {
+  const test::Workplace place;
+  for (const int signal : {SIGTERM, SIGINT}) {
+    RunningView view(place, {(place / "cube.stl").string()});
+    ASSERT_THAT(view.address(), StartsWith("http://127.0.0.1:"));
+    EXPECT_EQ(view.token().size(), 32U);
+    WebSocket socket(view.port(), view.token());
+    socket.send({{"type", "hello"}, {"size", {96, 64}}});
+    EXPECT_EQ(socket.read_and_acknowledge().width, 96);
+    view.signal(signal);
+    EXPECT_EQ(view.wait(), 0);
+  }
+}
+
+TEST(ViewProgram, ends_once_the_last_page_is_closed) {
+  const test::Workplace place;
+  RunningView view(place, {(place / "cube.stl").string(), "--once"});
+  {
+    WebSocket socket(view.port(), view.token());
+    socket.send({{"type", "hello"}, {"size", {96, 64}}});
+    socket.read_frame();
+  }
+  EXPECT_EQ(view.wait(), 0);
+}
+
+TEST(ViewProgram, shows_a_file_anew_that_has_changed) {
+  const test::Workplace place;
+  RunningView view(place, {(place / "cube.stl").string(), "--watch"});
+  WebSocket socket(view.port(), view.token());
+  socket.send({{"type", "hello"}, {"size", {96, 64}}});
+  EXPECT_EQ(socket.read_text("scene")["bounds"]["upper"][0], 2);
+  test::write_text(place / "cube.stl", test::cube_stl(3));
+  while (socket.read_text("scene")["bounds"]["upper"][0] != 3) {
+  }
+}
+
+TEST(ViewProgram, bad_input_and_options_are_errors_before_an_address_is_printed) {
+  const test::Workplace place;
+  for (const auto& [words, text] : std::initializer_list<std::pair<const char*, const char*>>{
+           {"view missing.stl", "missing.stl"},
+           {"view cube.stl --port 70000", "--port"},
+           {"view cube.stl --round 5", "radius"},
+           {"view cube.stl --host no.such.host.invalid --no-browser", "--host"},
+           {"view - --watch", "--watch"}}) {
+    const test::Outcome outcome = place.arris(words);
+    EXPECT_EQ(outcome.code, 2) << words;
+    EXPECT_EQ(outcome.out, "") << words;
+    EXPECT_THAT(outcome.err, HasSubstr(text)) << words;
+  }
+}
+
+}  // namespace
+}  // namespace arris

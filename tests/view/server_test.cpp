@@ -1,0 +1,413 @@
+// The server with a small model, over its sockets.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <memory>
+#include <string>
+#include <thread>
+
+#include "arris/error.h"
+#include "geometry/shapes.h"
+#include "io/decode_image.h"
+#include "io/picture_jpeg.h"
+#include "io/picture_png.h"
+#include "support/temporary_folder.h"
+#include "view/view_server.h"
+#include "view/web_client.h"
+
+namespace arris::view {
+namespace {
+
+using nlohmann::json;
+using test::Frame;
+using test::Request;
+using test::WebSocket;
+using testing::HasSubstr;
+
+ViewModel make_boxes() {
+  ViewModel model;
+  model.name = "boxes.obj";
+  model.scene.meshes.push_back(make_box_mesh({1, 1, 1}));
+  model.scene.materials.resize(1);
+  for (int i = 0; i < 2; ++i) {
+    Object object;
+    object.name = i == 0 ? "left" : "right";
+    object.world_from_object.translation = {2.0 * i, 0, 0};
+    model.scene.objects.push_back(object);
+  }
+  model.scene.rounding = RoundingSettings{RoundMethod::exact, 0.1};
+  model.scene.image.width_px = 160;
+  model.scene.image.height_px = 90;
+  model.scene.image.samples_per_pixel = 4;
+  return model;
+}
+
+class ViewServerTest : public testing::Test {
+ protected:
+  void start(ServerSettings settings = {}) {
+    ViewRendererSettings renderer;
+    renderer.threads = 1;
+    renderer.upload = settings.allow_upload;
+    renderer.open = [](const std::filesystem::path& file, const std::string& name) {
+      if (name == "bad.stl") throw Error(Error::Kind::input, name, "holds nothing; draw something");
+      ViewModel model = make_boxes();
+      model.name = name;
+      model.file = file;
+      model.scene.objects.resize(1);
+      return model;
+    };
+    server_ = std::make_unique<ViewServer>(make_boxes(), renderer, settings);
+    const std::string address = server_->address();  // http://127.0.0.1:PORT/?t=TOKEN
+    port_ = std::uint16_t(std::stoi(address.substr(17)));
+    token_ = address.substr(address.find("t=") + 2);
+    thread_ = std::thread([this] { server_->run(); });
+  }
+  ~ViewServerTest() override { stop(); }
+  void stop() {
+    if (!thread_.joinable()) return;
+    server_->stop();
+    thread_.join();
+  }
+
+  [[nodiscard]] std::string with_token(const std::string& target) const {
+    return target + (target.find('?') == std::string::npos ? "?t=" : "&t=") + token_;
+  }
+  [[nodiscard]] std::unique_ptr<WebSocket> look() const {
+    auto socket = std::make_unique<WebSocket>(port_, token_);
+    EXPECT_EQ(socket->status(), 101);
+    socket->send({{"type", "hello"}, {"size", {160, 90}}});
+    return socket;
+  }
+  static json camera(std::uint32_t seq, double x) {
+    return {{"type", "camera"},     {"seq", seq},        {"position", {x, -5, 3}},
+            {"target", {1, 0, 0}}, {"up", {0, 0, 1}}, {"fov", 35}};
+  }
+  static Frame read_until_seq(WebSocket& socket, std::uint32_t seq) {
+    for (;;) {
+      Frame frame = socket.read_and_acknowledge();
+      if (frame.seq == seq) return frame;
+    }
+  }
+  static Frame read_until_converged(WebSocket& socket) {
+    for (;;) {
+      Frame frame = socket.read_and_acknowledge();
+      if (frame.is_converged()) return frame;
+    }
+  }
+  static Rgba8Image decode(const Frame& frame) {
+    return decode_jpeg({reinterpret_cast<const std::uint8_t*>(frame.jpeg.data()), frame.jpeg.size()},
+                       "frame");
+  }
+
+  std::unique_ptr<ViewServer> server_;
+  std::thread thread_;
+  std::uint16_t port_ = 0;
+  std::string token_;
+};
+
+TEST_F(ViewServerTest, serves_the_page_to_those_who_know_the_token) {
+  start();
+  const auto page = test::fetch(port_, {.target = with_token("/")});
+  EXPECT_EQ(page.status, 200);
+  EXPECT_THAT(page.body, HasSubstr("<html"));
+  EXPECT_THAT(page.head, HasSubstr("Content-Security-Policy: default-src 'self'"));
+  EXPECT_THAT(page.head, HasSubstr("X-Content-Type-Options: nosniff"));
+  EXPECT_THAT(page.head, HasSubstr("Referrer-Policy: no-referrer"));
+  EXPECT_THAT(page.head, HasSubstr("Cache-Control: no-store"));
+  for (const char* target : {"/", "/?t=", "/?t=0123456789abcdef0123456789abcdef", "/ws",
+                             "/picture.png", "/scene.toml", "/beam.png"}) {
+    EXPECT_EQ(test::fetch(port_, {.target = target}).status, 403) << target;
+  }
+  for (const char* target : {"/../index.html", "/etc/passwd", "/web/index.html", "/nothing"}) {
+    EXPECT_EQ(test::fetch(port_, {.target = with_token(target)}).status, 404) << target;
+  }
+  EXPECT_EQ(test::fetch(port_, {.method = "PUT", .target = with_token("/")}).status, 405);
+}
+
+TEST_F(ViewServerTest, refuses_other_hosts_and_origins) {
+  start();
+  EXPECT_EQ(test::fetch(port_, {.target = with_token("/"), .host = "evil.example"}).status, 403);
+  EXPECT_EQ(test::fetch(port_, {.target = with_token("/"), .host = "localhost:9"}).status, 200);
+  EXPECT_EQ(test::fetch(port_, {.target = with_token("/picture.png"),
+                                .origin = "http://evil.example"}).status, 403);
+  EXPECT_EQ(WebSocket(port_, token_, "http://evil.example").status(), 403);
+  EXPECT_EQ(WebSocket(port_, "0123456789abcdef0123456789abcdef").status(), 403);
+  EXPECT_EQ(WebSocket(port_, token_, fmt::format("http://127.0.0.1:{}", port_)).status(), 101);
+}
+
+TEST_F(ViewServerTest, refuses_requests_that_are_too_long) {
+  start();
+  const auto long_header =
+      test::fetch(port_, {.target = with_token("/"), .more = "X: " + std::string(20000, 'a') + "\r\n"});
+  EXPECT_NE(long_header.status, 200);
+  const auto upload = test::fetch(port_, {.method = "POST", .target = with_token("/model?name=a.stl"),
+                                          .more = "Content-Length: 99999999999\r\n"});
+  EXPECT_EQ(upload.status, 413);
+}
+
+TEST_F(ViewServerTest, says_what_it_shows_and_sends_frames_until_the_view_has_converged) {
+  start();
+  auto socket = look();
+  const json scene = socket->read_text("scene");
+  EXPECT_EQ(scene["name"], "boxes.obj");
+  EXPECT_EQ(scene["objects"].size(), 2U);
+  EXPECT_EQ(scene["objects"][1]["name"], "right");
+  EXPECT_EQ(scene["rounding"]["radius"], 0.1);
+  const Frame frame = read_until_converged(*socket);
+  EXPECT_EQ(frame.width, 160);
+  EXPECT_EQ(frame.height, 90);
+  EXPECT_GE(frame.samples, 4U);
+  const Rgba8Image picture = decode(frame);
+  EXPECT_EQ(picture.width_px, 160);
+  EXPECT_EQ(picture.height_px, 90);
+  std::uint8_t darkest = 255, brightest = 0;
+  for (const auto& texel : picture.texels) {
+    darkest = std::min(darkest, texel[1]);
+    brightest = std::max(brightest, texel[1]);
+  }
+  EXPECT_GT(brightest - darkest, 30);
+}
+
+TEST_F(ViewServerTest, frames_bring_back_the_newest_input_and_rapid_ones_build_no_queue) {
+  start();
+  auto socket = look();
+  read_until_converged(*socket);
+  constexpr std::uint32_t kInputs = 200;
+  for (std::uint32_t seq = 1; seq <= kInputs; ++seq) socket->send(camera(seq, 0.01 * seq));
+  int frames = 0;
+  std::uint32_t last = 0;
+  while (last < kInputs) {
+    const Frame frame = socket->read_and_acknowledge();
+    EXPECT_GE(frame.seq, last);
+    last = frame.seq;
+    ++frames;
+  }
+  EXPECT_EQ(last, kInputs);
+  EXPECT_LT(frames, int(kInputs) / 2);
+}
+
+TEST_F(ViewServerTest, a_camera_changes_the_picture) {
+  start();
+  auto socket = look();
+  const Rgba8Image before = decode(read_until_converged(*socket));
+  socket->send(camera(1, 4));
+  read_until_seq(*socket, 1);
+  const Rgba8Image after = decode(read_until_converged(*socket));
+  EXPECT_NE(before.texels, after.texels);
+}
+
+TEST_F(ViewServerTest, a_client_that_acknowledges_nothing_gets_one_frame_and_disturbs_nobody) {
+  start();
+  auto silent = look();
+  silent->read_frame();
+  auto socket = look();
+  read_until_converged(*socket);
+  for (std::uint32_t seq = 1; seq <= 5; ++seq) {
+    socket->send(camera(seq, seq));
+    read_until_seq(*socket, seq);
+  }
+  // All that had come for it before this answer is read; there is no frame among it.
+  silent->send({{"type", "pick"}, {"seq", 1}, {"at", {1, 1}}});
+  for (;;) {
+    const auto message = silent->read();
+    ASSERT_TRUE(message);
+    ASSERT_FALSE(message->is_binary);
+    if (json::parse(message->payload)["type"] == "picked") break;
+  }
+}
+
+TEST_F(ViewServerTest, clients_are_bounded_in_number) {
+  start();
+  std::vector<std::unique_ptr<WebSocket>> sockets;
+  for (int i = 0; i < 8; ++i) {
+    sockets.push_back(look());
+    sockets.back()->read_text("scene");
+  }
+  EXPECT_EQ(WebSocket(port_, token_).status(), 503);
+}
+
+TEST_F(ViewServerTest, answers_what_it_does_not_understand_and_goes_on) {
+  start();
+  auto socket = look();
+  socket->send_text("{");
+  EXPECT_THAT(socket->read_text("error")["text"].get<std::string>(), HasSubstr("JSON"));
+  socket->send({{"type", "object"}, {"seq", 7}, {"id", 5}, {"visible", false}});
+  const json error = socket->read_text("error");
+  EXPECT_EQ(error["seq"], 7);
+  EXPECT_THAT(error["text"].get<std::string>(), HasSubstr("no object 5"));
+  socket->send_frame(0x82, "binary");
+  socket->read_text("error");
+  read_until_converged(*socket);
+}
+
+TEST_F(ViewServerTest, a_message_that_is_too_long_ends_the_session) {
+  start();
+  auto socket = look();
+  socket->send_text(std::string(70000, ' '));
+  while (socket->read()) {
+  }
+  read_until_converged(*look());
+}
+
+TEST_F(ViewServerTest, changes_of_the_scene_show_and_are_said) {
+  start();
+  auto socket = look();
+  const json first = socket->read_text("scene");
+  read_until_converged(*socket);
+  socket->send({{"type", "object"}, {"seq", 1}, {"id", 1}, {"visible", false}});
+  read_until_seq(*socket, 1);
+  socket->send({{"type", "light"}, {"seq", 2}, {"lighting", "sky"}});
+  socket->send({{"type", "material"}, {"seq", 3}, {"name", "brass"}});
+  read_until_seq(*socket, 3);
+  socket->send({{"type", "rounding"}, {"seq", 4}, {"radius", 0.2}});
+  read_until_seq(*socket, 4);
+  socket->send({{"type", "object"},
+                {"seq", 5},
+                {"id", 0},
+                {"matrix", {{1, 0, 0, 0.5}, {0, 1, 0, 0}, {0, 0, 1, 0}, {0, 0, 0, 1}}}});
+  read_until_seq(*socket, 5);
+  socket->send({{"type", "size"}, {"seq", 6}, {"size", {200, 100}}});
+  EXPECT_EQ(read_until_seq(*socket, 6).width, 200);
+  read_until_converged(*socket);
+  auto other = look();
+  other->send({{"type", "size"}, {"size", {200, 100}}});
+  const json scene = other->read_text("scene");
+  EXPECT_EQ(scene["objects"][1]["visible"], false);
+  EXPECT_EQ(scene["objects"][0]["matrix"][0][3], 0.5);
+  EXPECT_EQ(scene["lighting"], "sky");
+  EXPECT_EQ(scene["material"], "brass");
+  EXPECT_EQ(scene["rounding"]["radius"], 0.2);
+  EXPECT_EQ(scene["rounding"]["method"], "exact");
+}
+
+TEST_F(ViewServerTest, a_change_that_cannot_be_made_is_an_error_and_changes_nothing) {
+  start();
+  auto socket = look();
+  read_until_converged(*socket);
+  socket->send({{"type", "rounding"}, {"seq", 1}, {"radius", 0.7}});
+  const json error = socket->read_text("error");
+  EXPECT_EQ(error["seq"], 1);
+  EXPECT_THAT(error["text"].get<std::string>(), HasSubstr("0.7"));
+  EXPECT_EQ(socket->read_text("scene")["rounding"]["radius"], 0.1);
+  socket->send(camera(2, 3));
+  read_until_seq(*socket, 2);
+  read_until_converged(*socket);
+}
+
+TEST_F(ViewServerTest, compares_roundings_along_a_line) {
+  start();
+  auto socket = look();
+  const Rgba8Image before = decode(read_until_converged(*socket));
+  socket->send({{"type", "compare"}, {"seq", 1}, {"method", "none"}, {"split", 0.5}});
+  read_until_seq(*socket, 1);
+  const Rgba8Image after = decode(read_until_converged(*socket));
+  // The same paths on the left, but for JPEG's blocks; sharp edges on the right.
+  const auto difference = [&](int first, int last) {
+    double sum = 0;
+    for (int y = 0; y < 90; ++y) {
+      for (int x = first; x < last; ++x) {
+        const std::size_t at = std::size_t(y) * 160 + std::size_t(x);
+        sum += std::abs(int(before.texels[at][1]) - int(after.texels[at][1]));
+      }
+    }
+    return sum / (90 * (last - first));
+  };
+  EXPECT_GT(difference(88, 160), 0.2);
+}
+
+TEST_F(ViewServerTest, says_what_is_under_the_mouse) {
+  start();
+  auto socket = look();
+  socket->send({{"type", "camera"},     {"seq", 1},        {"position", {2, -5, 0}},
+                {"target", {2, 0, 0}}, {"up", {0, 0, 1}}, {"fov", 35}});
+  read_until_seq(*socket, 1);
+  socket->send({{"type", "pick"}, {"seq", 2}, {"at", {80, 45}}});
+  const json hit = socket->read_text("picked");
+  EXPECT_EQ(hit["seq"], 2);
+  EXPECT_EQ(hit["id"], 1);
+  EXPECT_EQ(hit["feature"], "face");
+  EXPECT_NEAR(hit["position"][1].get<double>(), -0.5, 1e-6);
+  socket->send({{"type", "pick"}, {"seq", 3}, {"at", {0, 0}}});
+  EXPECT_TRUE(socket->read_text("picked")["id"].is_null());
+}
+
+TEST_F(ViewServerTest, saves_the_picture_and_the_scene) {
+  start();
+  auto socket = look();
+  read_until_converged(*socket);
+  const auto picture = test::fetch(port_, {.target = with_token("/picture.png")});
+  EXPECT_EQ(picture.status, 200);
+  EXPECT_THAT(picture.head, HasSubstr("image/png"));
+  const Rgba8Image png = decode_png(
+      {reinterpret_cast<const std::uint8_t*>(picture.body.data()), picture.body.size()}, "png");
+  EXPECT_EQ(png.width_px, 160);
+  const auto scene = test::fetch(port_, {.target = with_token("/scene.toml")});
+  EXPECT_EQ(scene.status, 200);
+  EXPECT_THAT(scene.body, HasSubstr("file = \"boxes.obj\""));
+  EXPECT_EQ(test::fetch(port_, {.target = with_token("/beam.png")}).status, 404);
+}
+
+TEST_F(ViewServerTest, makes_beam_pictures) {
+  start();
+  auto socket = look();
+  socket->send({{"type", "beam"}, {"seq", 1}});
+  for (;;) {
+    const json beam = socket->read_text("beam");
+    ASSERT_FALSE(beam.contains("error")) << beam;
+    if (beam["ready"].get<bool>()) break;
+  }
+  EXPECT_EQ(test::fetch(port_, {.target = with_token("/beam.png")}).status, 200);
+}
+
+TEST_F(ViewServerTest, takes_models_only_where_that_is_allowed) {
+  start();
+  EXPECT_EQ(test::fetch(port_, {.method = "POST", .target = with_token("/model?name=a.stl"),
+                                .body = "solid"}).status, 403);
+}
+
+TEST_F(ViewServerTest, shows_models_that_are_dropped) {
+  start({.allow_upload = true});
+  auto socket = look();
+  EXPECT_EQ(socket->read_text("scene")["upload"], true);
+  const auto post = [&](const std::string& name) {
+    return test::fetch(port_, {.method = "POST", .target = with_token("/model?name=" + name),
+                               .body = "solid"});
+  };
+  EXPECT_EQ(post("a.toml").status, 415);
+  EXPECT_EQ(post("").status, 415);
+  EXPECT_EQ(test::fetch(port_, {.method = "POST", .target = "/model?name=a.stl", .body = "s"}).status,
+            403);
+  const auto bad = post("bad.stl");
+  EXPECT_EQ(bad.status, 422);
+  EXPECT_THAT(bad.body, HasSubstr("holds nothing"));
+  EXPECT_EQ(post("..%2Fnew.stl").status, 204);
+  for (;;) {
+    const json scene = socket->read_text("scene");
+    if (scene["name"] != "new.stl") continue;
+    EXPECT_EQ(scene["objects"].size(), 1U);
+    break;
+  }
+}
+
+TEST_F(ViewServerTest, ends_when_the_last_client_has_left) {
+  start({.once = true});
+  {
+    auto one = look();
+    one->read_frame();
+    auto two = look();
+    two->read_frame();
+  }
+  thread_.join();
+}
+
+TEST_F(ViewServerTest, stops_while_clients_look) {
+  start();
+  auto socket = look();
+  socket->read_frame();
+  stop();
+  while (socket->read()) {
+  }
+}
+
+}  // namespace
+}  // namespace arris::view

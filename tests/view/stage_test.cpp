@@ -1,0 +1,192 @@
+#include "view/view_stage.h"
+
+#include <gtest/gtest.h>
+
+#include "arris/error.h"
+#include "arris/render.h"
+#include "geometry/shapes.h"
+#include "io/toml_scene.h"
+#include "view/scene_file.h"
+
+namespace arris::view {
+namespace {
+
+ViewModel make_model(std::size_t objects) {
+  ViewModel model;
+  model.name = "boxes.obj";
+  model.scene.meshes.push_back(make_box_mesh({1, 2, 3}));
+  model.scene.materials.resize(1);
+  for (std::size_t i = 0; i < objects; ++i) {
+    Object object;
+    object.name = "box " + std::to_string(i);
+    object.world_from_object.translation = {3.0 * double(i), 0, 0};
+    model.scene.objects.push_back(object);
+  }
+  model.scene.rounding = RoundingSettings{RoundMethod::exact, 0.25};
+  return model;
+}
+
+TEST(ViewStage, the_first_view_is_the_one_that_render_makes) {
+  const ViewModel model = make_model(2);
+  Scene rendered = model.scene;
+  stage_model(rendered, {});
+  const Scene shown = stage_view(model, first_edits(model)).scene;
+  EXPECT_TRUE(validate_scene(shown).empty());
+  EXPECT_EQ(shown.objects.size(), rendered.objects.size());
+  EXPECT_EQ(shown.environment, rendered.environment);
+  EXPECT_EQ(shown.rounding, rendered.rounding);
+  EXPECT_EQ(shown.camera->position, rendered.camera->position);
+  EXPECT_EQ(shown.materials[0].name, rendered.materials[0].name);
+}
+
+TEST(ViewStage, hidden_objects_leave_and_the_others_keep_their_place) {
+  const ViewModel model = make_model(3);
+  ViewEdits edits = first_edits(model);
+  SetObject hide;
+  hide.id = 1;
+  hide.visible = false;
+  apply_message(model, hide, edits);
+  const StagedView staged = stage_view(model, edits);
+  EXPECT_EQ(staged.scene.objects.size(), 3U);  // with the ground
+  EXPECT_EQ(staged.index_of[0], 0U);
+  EXPECT_EQ(staged.index_of[1], std::nullopt);
+  EXPECT_EQ(staged.index_of[2], 1U);
+  EXPECT_EQ(staged.scene.objects[2].name, "ground");
+  EXPECT_EQ(staged.scene.meshes.back().positions,
+            stage_view(model, first_edits(model)).scene.meshes.back().positions);
+  apply_message(model, Isolate{1}, edits);
+  EXPECT_EQ(stage_view(model, edits).index_of[1], 0U);
+  apply_message(model, Isolate{}, edits);
+  EXPECT_EQ(stage_view(model, edits).scene.objects.size(), 4U);
+}
+
+TEST(ViewStage, says_how_much_is_new) {
+  const ViewModel model = make_model(2);
+  const ViewEdits first = first_edits(model);
+  const auto work = [&](const MessageKind& message) {
+    ViewEdits edits = first;
+    apply_message(model, message, edits);
+    return find_work(first, edits);
+  };
+  SetCamera camera{first.camera};
+  EXPECT_EQ(work(camera), ViewWork::none);
+  camera.camera.fov_deg = 20;
+  EXPECT_EQ(work(camera), ViewWork::camera);
+  EXPECT_EQ(work(SetOverlay{true}), ViewWork::redraw);
+  SetRounding rounding;
+  rounding.edges = RoundEdges::both;
+  EXPECT_EQ(work(rounding), ViewWork::change);
+  SetObject object;
+  object.world_from_object = Affine3d{{}, {0, 0, 9}};
+  EXPECT_EQ(work(object), ViewWork::change);
+  object.radius = Radius(0.5);
+  EXPECT_EQ(work(object), ViewWork::prepare);
+  EXPECT_EQ(work(SetSize{{100, 100}}), ViewWork::new_engine);
+  EXPECT_EQ(work(Compare{RoundMethod::none, 0.5}), ViewWork::new_engine);
+  EXPECT_EQ(work(SetShader{EdgePointShader::direct}), ViewWork::new_engine);
+  EXPECT_EQ(work(SetGround{false}), ViewWork::prepare);
+  EXPECT_EQ(work(SetMaterial{"brass"}), ViewWork::prepare);
+  EXPECT_EQ(work(SetLight{LightChoice::sky, {}, {}}), ViewWork::prepare);
+}
+
+TEST(ViewStage, radii_of_objects_follow_the_scenes_other_settings) {
+  const ViewModel model = make_model(2);
+  ViewEdits edits = first_edits(model);
+  SetObject object;
+  object.radius = Radius(0.4);
+  apply_message(model, object, edits);
+  SetRounding rounding;
+  rounding.radius = 0.1;
+  rounding.method = RoundMethod::shader;
+  apply_message(model, rounding, edits);
+  EXPECT_EQ(edits.objects[0].rounding->radius, Radius(0.4));
+  EXPECT_EQ(edits.objects[0].rounding->method, RoundMethod::shader);
+  EXPECT_FALSE(edits.objects[1].rounding);
+  object.radius.emplace();
+  apply_message(model, object, edits);
+  EXPECT_FALSE(edits.objects[0].rounding);
+}
+
+TEST(ViewStage, what_is_refused_changes_nothing) {
+  const ViewModel model = make_model(1);
+  ViewEdits edits = first_edits(model);
+  const ViewEdits before = edits;
+  SetObject object;
+  object.id = 1;
+  object.visible = false;
+  EXPECT_THROW(apply_message(model, object, edits), Error);
+  EXPECT_THROW(apply_message(model, Isolate{7}, edits), Error);
+  EXPECT_THROW(apply_message(model, SetMaterial{"unobtainium"}, edits), Error);
+  SetCamera camera{edits.camera};
+  camera.camera.target = camera.camera.position;
+  EXPECT_THROW(apply_message(model, camera, edits), Error);
+  EXPECT_EQ(find_work(before, edits), ViewWork::none);
+}
+
+TEST(ViewStage, what_was_changed_by_hand_outlives_a_change_of_the_file) {
+  const ViewModel before = make_model(2);
+  ViewEdits edits = first_edits(before);
+  apply_message(before, SetMaterial{"brass"}, edits);
+  edits.objects[1].visible = false;
+  ViewModel after = before;
+  after.scene.rounding->radius = 0.125;
+  const ViewEdits carried = carry_over(first_edits(before), edits, first_edits(after));
+  EXPECT_EQ(carried.material, "brass");
+  EXPECT_FALSE(carried.objects[1].visible);
+  EXPECT_EQ(carried.rounding.radius, Radius(0.125));
+  const ViewModel fewer = make_model(1);
+  EXPECT_EQ(carry_over(first_edits(before), edits, first_edits(fewer)).objects.size(), 1U);
+}
+
+TEST(ViewStage, framed_views_show_all_from_where_they_are_asked_for) {
+  const ViewModel model = make_model(1);
+  const ViewEdits edits = first_edits(model);
+  const auto direction = [&](FrameView::From from) {
+    const Camera camera = frame_view(model, edits, from);
+    return normalize(camera.target - camera.position);
+  };
+  EXPECT_NEAR(length(direction(FrameView::From::top) - Vec3d(0, 0, -1)), 0, 1e-9);
+  EXPECT_NEAR(length(direction(FrameView::From::front) - Vec3d(0, 1, 0)), 0, 1e-9);
+  EXPECT_NEAR(length(direction(FrameView::From::right) - Vec3d(-1, 0, 0)), 0, 1e-9);
+  const Vec3d here = normalize(edits.camera.target - edits.camera.position);
+  EXPECT_NEAR(length(direction(FrameView::From::here) - here), 0, 1e-6);
+}
+
+TEST(SceneFile, is_read_back_as_the_scene_that_is_shown) {
+  const ViewModel model = make_model(1);
+  ViewEdits edits = first_edits(model);
+  edits.ground = false;
+  apply_message(model, SetLight{LightChoice::sky, 2.5, 30.0}, edits);
+  apply_message(model, SetMaterial{"brass"}, edits);
+  SetObject object;
+  object.world_from_object = Affine3d{{{0, 1, 0}, {-1, 0, 0}, {0, 0, 1}}, {4, 5, 6.1}};
+  object.radius = Radius(PercentOfInradius{12.5});
+  apply_message(model, object, edits);
+  const Scene shown = stage_view(model, edits).scene;
+  const Scene read = read_toml_scene(make_scene_file(model, edits), "saved.toml", "/",
+                                     [&](const std::filesystem::path&) { return model.scene; });
+  EXPECT_EQ(read.environment, shown.environment);
+  EXPECT_EQ(read.rounding, shown.rounding);
+  EXPECT_EQ(read.camera->position, shown.camera->position);
+  EXPECT_EQ(read.camera->up, shown.camera->up);
+  EXPECT_EQ(read.image.width_px, shown.image.width_px);
+  EXPECT_EQ(read.image.filter, shown.image.filter);
+  ASSERT_EQ(read.objects.size(), 1U);
+  EXPECT_EQ(read.objects[0].world_from_object, shown.objects[0].world_from_object);
+  EXPECT_EQ(read.objects[0].rounding, shown.objects[0].rounding);
+  const Material& material = read.materials[read.objects[0].material.index];
+  EXPECT_EQ(material.base_color, shown.materials[0].base_color);
+  EXPECT_EQ(material.metallic, shown.materials[0].metallic);
+}
+
+TEST(SceneFile, says_what_it_lacks) {
+  const ViewModel model = make_model(3);
+  ViewEdits edits = first_edits(model);
+  edits.objects[1].visible = false;
+  const std::string text = make_scene_file(model, edits);
+  EXPECT_NE(text.find("# not in this file: these parts were hidden: box 1"), std::string::npos);
+  EXPECT_NE(text.find("--ground on"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace arris::view
