@@ -296,8 +296,8 @@ CommandRow compare_row() {
 }  // namespace
 
 std::span<const CommandRow> commands() {
-  static const std::vector<CommandRow> kCommands{render_row(), view_row(), info_row(), shoot_row(), merge_row(),
-                                                 compare_row()};
+  static const std::vector<CommandRow> kCommands{render_row(), view_row(),  info_row(),
+                                                 shoot_row(),  merge_row(), compare_row()};
   return kCommands;
 }
 

@@ -61,8 +61,7 @@ void BeamWorker::render(const Request& request) {
     throw Error(Error::Kind::input, "", fmt::format("{}", fmt::join(problems, "\n")));
   }
   set_status(request, {});
-  const auto prepared =
-      prepare_scene(request.scene, {.threads = request.threads, .stop = &stop_});
+  const auto prepared = prepare_scene(request.scene, {.threads = request.threads, .stop = &stop_});
   RenderOptions options;
   options.samples.last = std::uint32_t(request.scene.image.samples_per_pixel);
   options.threads = request.threads;

@@ -61,8 +61,7 @@ const Rgb8Picture& FrameEncoder::tone_map(const Image& linear, double exposure) 
                  const float* from = linear.values.data() + y * row;
                  std::uint8_t* to = picture_.samples.data() + y * row;
                  for (std::size_t i = 0; i < row; i += 3) {
-                   const Rgb shown =
-                       eval_display_curve({from[i], from[i + 1], from[i + 2]}, scale);
+                   const Rgb shown = eval_display_curve({from[i], from[i + 1], from[i + 2]}, scale);
                    to[i] = code_of(shown.x);
                    to[i + 1] = code_of(shown.y);
                    to[i + 2] = code_of(shown.z);

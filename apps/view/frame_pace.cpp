@@ -40,8 +40,8 @@ void FramePace::note_frame(Clock::time_point begin, Clock::time_point end, bool 
   last_ = end;
   frames_.push_back(end);
   while (frames_.front() <= end - kRateWindow) frames_.pop_front();
-  earliest_ = std::max(begin + kMovingInterval,
-                       end + to_clock(took * (kShaderShare / (1 - kShaderShare))));
+  earliest_ =
+      std::max(begin + kMovingInterval, end + to_clock(took * (kShaderShare / (1 - kShaderShare))));
   next_ = earliest_;
   if (is_moving(end) || idle) return;
   const duration<double> pause =

@@ -1,6 +1,7 @@
 // One connection: a request and its answer, or the beginning of a client session.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <boost/asio/dispatch.hpp>
 #include <boost/asio/post.hpp>
 #include <boost/beast/core/flat_buffer.hpp>
@@ -11,7 +12,6 @@
 #include <boost/beast/http/string_body.hpp>
 #include <boost/beast/http/write.hpp>
 #include <boost/beast/websocket/rfc6455.hpp>
-#include <algorithm>
 #include <exception>
 #include <string>
 #include <system_error>
@@ -71,17 +71,17 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
 
   void start() {
     stream_.expires_after(kHeaderTime);
-    http::async_read_header(stream_, buffer_, parser_,
-                            [self = shared_from_this()](error_code error, std::size_t) {
-                              self->on_header(error);
-                            });
+    http::async_read_header(
+        stream_, buffer_, parser_,
+        [self = shared_from_this()](error_code error, std::size_t) { self->on_header(error); });
   }
 
  private:
   void on_header(error_code error) {
     if (error == http::error::body_limit) {
-      return answer(refusal(http::status::payload_too_large,
-                            fmt::format("models can be up to {} MiB here", kMostUploadBytes >> 20)));
+      return answer(
+          refusal(http::status::payload_too_large,
+                  fmt::format("models can be up to {} MiB here", kMostUploadBytes >> 20)));
     }
     if (error == http::error::header_limit) {
       return answer(refusal(http::status::request_header_fields_too_large, "too long"));
@@ -122,15 +122,15 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
       if (is_page && !has_token()) return refuse_token();
       return answer({http::status::ok, type_of(name), std::string(file->content), ""});
     }
-    const bool is_known = path == "/ws" || path == "/picture.png" || path == "/scene.toml" ||
-                          path == "/beam.png";
+    const bool is_known =
+        path == "/ws" || path == "/picture.png" || path == "/scene.toml" || path == "/beam.png";
     if (!is_known) return answer(refusal(http::status::not_found, "there is no such address"));
     if (!has_token()) return refuse_token();
     if (path == "/ws") return on_socket();
     stream_.expires_after(kBodyTime);
     if (path == "/scene.toml") {
       return server_.renderer().save_scene([self = shared_from_this()](std::string text,
-                                                               const std::string& problem) {
+                                                                       const std::string& problem) {
         if (!problem.empty()) {
           return self->answer_later(refusal(http::status::conflict, problem));
         }
@@ -141,8 +141,8 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
       if (png.empty()) {
         return self->answer_later(refusal(http::status::not_found, "there is no such picture"));
       }
-      self->answer_later({http::status::ok, "image/png", std::string(png.begin(), png.end()),
-                          path.substr(1)});
+      self->answer_later(
+          {http::status::ok, "image/png", std::string(png.begin(), png.end()), path.substr(1)});
     };
     if (path == "/picture.png") return server_.renderer().save_picture(send_picture);
     server_.renderer().save_beam(send_picture);
@@ -184,10 +184,9 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
     uploading_ = true;
     extension_ = *extension;
     stream_.expires_after(kBodyTime);
-    http::async_read(stream_, buffer_, parser_,
-                     [self = shared_from_this()](error_code error, std::size_t) {
-                       self->on_body(error);
-                     });
+    http::async_read(
+        stream_, buffer_, parser_,
+        [self = shared_from_this()](error_code error, std::size_t) { self->on_body(error); });
   }
 
   void on_body(error_code error) {
@@ -251,12 +250,10 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
     response_.body() = std::move(what.body);
     response_.prepare_payload();
     stream_.expires_after(kBodyTime);
-    http::async_write(stream_, response_,
-                      [self = shared_from_this()](error_code, std::size_t) {
-                        error_code ignored;
-                        self->stream_.socket().shutdown(asio::ip::tcp::socket::shutdown_send,
-                                                        ignored);
-                      });
+    http::async_write(stream_, response_, [self = shared_from_this()](error_code, std::size_t) {
+      error_code ignored;
+      self->stream_.socket().shutdown(asio::ip::tcp::socket::shutdown_send, ignored);
+    });
   }
 
   // Older browsers don't take a WebSocket for the page's own origin.

@@ -127,9 +127,8 @@ std::string write_model(const ViewModel& model, const ViewEdits& edits, const Sc
 
 // Whether a line of a scene file begins a part that the view has its own of. Headers only.
 bool is_replaced(std::string_view name) {
-  constexpr std::array<std::string_view, 8> kParts{"image",      "camera",      "camera.key",
-                                                   "environment", "light",     "light.key",
-                                                   "round",       "animation"};
+  constexpr std::array<std::string_view, 8> kParts{
+      "image", "camera", "camera.key", "environment", "light", "light.key", "round", "animation"};
   return std::ranges::find(kParts, name) != kParts.end();
 }
 
@@ -171,8 +170,7 @@ std::string write_changed_scene(const ViewModel& model, const ViewEdits& edits,
                  [](const Object&, const ObjectEdit& edit) { return edit.has_edited_radius; });
   if (edits.material) comments.push_back("not in this file: all was " + *edits.material);
   const std::vector<std::uint8_t> bytes = read_file_bytes(model.file, kMostSceneFileBytes);
-  const std::string own =
-      kept_lines({reinterpret_cast<const char*>(bytes.data()), bytes.size()});
+  const std::string own = kept_lines({reinterpret_cast<const char*>(bytes.data()), bytes.size()});
   // Keys at the top of the file come before all tables.
   const std::size_t first_table = own.find("\n[");
   const bool has_top = !own.starts_with("[") && first_table != std::string::npos;

@@ -110,8 +110,8 @@ UsableView usable_parts(const ShownView& view) {
 
 ShownView build_view(std::shared_ptr<const ViewModel> model, const ViewEdits& edits,
                      const BuildSettings& settings, const std::optional<UsableView>& before) {
-  const bool is_usable = before && before->model == model &&
-                         find_work(before->edits, edits) < ViewWork::prepare;
+  const bool is_usable =
+      before && before->model == model && find_work(before->edits, edits) < ViewWork::prepare;
   const UsableView* use = is_usable ? &*before : nullptr;
   ShownView view;
   view.edits = edits;

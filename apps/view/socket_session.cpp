@@ -105,7 +105,8 @@ class SocketSession : public ClientSession, public std::enable_shared_from_this<
   void write() {
     if (writing_ || closing_) return;
     // Nobody gets frames before saying how large they should be, and hearing of what.
-    auto next = queue_->take(greeted_ && has_scene_ ? ClientQueue::Kinds::all : ClientQueue::Kinds::texts);
+    auto next =
+        queue_->take(greeted_ && has_scene_ ? ClientQueue::Kinds::all : ClientQueue::Kinds::texts);
     if (!next) return;
     writing_ = true;
     if (auto* text = std::get_if<ClientQueue::Text>(&*next)) {
@@ -149,7 +150,7 @@ class SocketSession : public ClientSession, public std::enable_shared_from_this<
   std::optional<ClientQueue> queue_;  // set: it is a client
   ClientId client_ = 0;
   bool greeted_ = false, has_scene_ = false, writing_ = false, closing_ = false;
-  std::string text_;           // what is being sent
+  std::string text_;  // what is being sent
   ClientQueue::Frame frame_;
 };
 

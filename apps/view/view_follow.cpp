@@ -227,15 +227,14 @@ void ViewRenderer::Loop::make_frame() {
   std::uint32_t samples = stats.still_paths;
   if (view_.compared) samples = std::min(samples, view_.compared->stats().still_paths);
   const auto wanted = std::uint32_t(view_.model->scene.image.samples_per_pixel);
-  const bool converged =
-      !moving && asked_.empty() && !build_.is_running() && samples >= wanted;
+  const bool converged = !moving && asked_.empty() && !build_.is_running() && samples >= wanted;
   settled_ = converged;
   publish(moving, converged);
   send_state(converged);
 }
 
-// Then the next frame brings more than a pause would. The engine asks for as much again as was done and half of it, within
-// an eighth of its density and all of it.
+// Then the next frame brings more than a pause would. The engine asks for as much again as was done and half of it,
+// within an eighth of its density and all of it.
 bool ViewRenderer::Loop::is_shader_idle() {
   const EdgePointStats& stats = view_.engine->stats();
   const double most =
@@ -264,8 +263,8 @@ const Image& ViewRenderer::Loop::compose(const Image& main, const Image* right) 
   if (right == nullptr && !view_.edits.overlay) return main;
   composed_ = main;
   const auto width = std::size_t(main.width_px);
-  const auto split = right == nullptr ? width
-                                      : std::size_t(std::lround(view_.edits.split * double(width)));
+  const auto split =
+      right == nullptr ? width : std::size_t(std::lround(view_.edits.split * double(width)));
   const auto copy_right = [&](const Image& from, Image& to) {
     for (int y = 0; y < main.height_px; ++y) {
       const auto first = std::ptrdiff_t(main.offset(0, y) + split * 3);

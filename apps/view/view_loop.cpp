@@ -23,7 +23,8 @@ constexpr auto kSceneInterval = std::chrono::milliseconds(100);
 constexpr auto kUnreadyWait = std::chrono::milliseconds(250);
 
 bool is_move(const MessageKind& what) {
-  if (const auto* object = std::get_if<SetObject>(&what)) return object->world_from_object.has_value();
+  if (const auto* object = std::get_if<SetObject>(&what))
+    return object->world_from_object.has_value();
   return std::holds_alternative<SetCamera>(what);
 }
 
@@ -48,6 +49,7 @@ ViewRenderer::Loop::~Loop() {
 
 void ViewRenderer::Loop::start(ViewOutputs outputs) {
   outputs_ = std::move(outputs);
+  pace_.note_change(Clock::now());
   thread_ = std::thread([this] { run(); });
 }
 
@@ -200,8 +202,7 @@ void ViewRenderer::Loop::pick(const Input& input, const Pick& at) {
     const auto found = std::ranges::find(index_of, std::optional(shot->object.index));
     if (found != index_of.end()) object = std::uint32_t(found - index_of.begin());
   }
-  const auto seq =
-      input.marks.empty() ? std::nullopt : std::optional(input.marks.back().seq);
+  const auto seq = input.marks.empty() ? std::nullopt : std::optional(input.marks.back().seq);
   send("picked", picked_message(seq, shot, object), input.client);
 }
 
@@ -225,9 +226,7 @@ void ViewRenderer::Loop::join(ClientId client) {
   clients_.push_back(client);
   settled_ = false;
   pace_.hurry(Clock::now());
-  send("scene",
-       scene_message(view_, desired_, settings_.upload),
-       client);
+  send("scene", scene_message(view_, desired_, settings_.upload), client);
   if (!busy_.empty()) send("busy", busy_message(busy_), client);
 }
 
@@ -261,9 +260,7 @@ void ViewRenderer::Loop::send_scene_soon(std::optional<ClientId> but_not) {
 void ViewRenderer::Loop::send_scene() {
   scene_dirty_ = false;
   scene_sent_ = Clock::now();
-  send("scene",
-       scene_message(view_, desired_, settings_.upload),
-       {}, scene_but_not_);
+  send("scene", scene_message(view_, desired_, settings_.upload), {}, scene_but_not_);
 }
 
 void ViewRenderer::Loop::set_busy(const std::string& what) {
@@ -289,8 +286,7 @@ void ViewRenderer::Loop::send_state(bool now) {
 
 // Files to save, and models to open.
 
-void ViewRenderer::Loop::save_picture(
-    const std::function<void(std::vector<std::uint8_t>)>& done) {
+void ViewRenderer::Loop::save_picture(const std::function<void(std::vector<std::uint8_t>)>& done) {
   if (picture_ == nullptr) make_pictures();
   SaveOptions options;
   options.exposure = view_.model->scene.image.exposure;

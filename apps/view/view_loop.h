@@ -111,7 +111,7 @@ class ViewRenderer::Loop {
   std::vector<InputMark> building_;
   ViewEdits built_;  // what is being built
   BackgroundJob<ShownView> build_;
-  std::optional<OpenRequest> opening_;    // being built
+  std::optional<OpenRequest> opening_;  // being built
   std::optional<OpenRequest> next_open_;
   std::string busy_;
 

@@ -29,9 +29,8 @@ using Names = std::vector<std::pair<std::string, T>>;
 
 const Names<RoundMethod> kMethods{
     {"exact", RoundMethod::exact}, {"shader", RoundMethod::shader}, {"none", RoundMethod::none}};
-const Names<RoundEdges> kEdges{{"convex", RoundEdges::convex},
-                               {"concave", RoundEdges::concave},
-                               {"both", RoundEdges::both}};
+const Names<RoundEdges> kEdges{
+    {"convex", RoundEdges::convex}, {"concave", RoundEdges::concave}, {"both", RoundEdges::both}};
 const Names<LightChoice> kLights{{"studio", LightChoice::studio},
                                  {"sky", LightChoice::sky},
                                  {"white", LightChoice::white},

@@ -32,7 +32,7 @@ struct ViewFrame {
 
 struct ViewText {
   std::string type, text;
-  std::optional<ClientId> to;      // empty: all
+  std::optional<ClientId> to;  // empty: all
   std::optional<ClientId> but_not;
 };
 

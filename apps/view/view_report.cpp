@@ -84,9 +84,8 @@ std::string scene_message(const ShownView& view, const ViewEdits& edits, bool up
   json objects = json::array();
   Bounds all;
   for (std::size_t i = 0; i < edits.objects.size(); ++i) {
-    const Bounds bounds =
-        moved_bounds(view.bounds[i], model.scene.objects[i].world_from_object,
-                     edits.objects[i].world_from_object);
+    const Bounds bounds = moved_bounds(view.bounds[i], model.scene.objects[i].world_from_object,
+                                       edits.objects[i].world_from_object);
     all.add(bounds);
     objects.push_back(object_json(model, edits, i, bounds));
     objects.back()["rounded"] = rounded_radius(*view.engine->scene(), view.staged.index_of[i]);
@@ -145,8 +144,11 @@ std::string state_message(const ViewState& state, const PreparedScene& prepared)
 
 std::string picked_message(std::optional<std::uint32_t> seq, const std::optional<Shot>& shot,
                            std::optional<std::uint32_t> object) {
-  json out{{"type", "picked"},     {"id", nullptr},       {"position", nullptr},
-           {"normal", nullptr}, {"feature", nullptr}};
+  json out{{"type", "picked"},
+           {"id", nullptr},
+           {"position", nullptr},
+           {"normal", nullptr},
+           {"feature", nullptr}};
   if (seq) out["seq"] = *seq;
   if (object) out["id"] = *object;
   if (shot) {

@@ -30,8 +30,8 @@ tcp::endpoint find_endpoint(const ServerSettings& settings, asio::io_context& co
   const auto address = asio::ip::make_address(settings.host, error);
   if (!error) return {address, settings.port};
   tcp::resolver resolver(context);
-  const auto found = resolver.resolve(settings.host, std::to_string(settings.port),
-                                      tcp::resolver::passive, error);
+  const auto found =
+      resolver.resolve(settings.host, std::to_string(settings.port), tcp::resolver::passive, error);
   if (error || found.empty()) {
     throw Error(Error::Kind::input, "--host",
                 fmt::format("\"{}\" is no address of this machine; use 127.0.0.1 for this machine "

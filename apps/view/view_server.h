@@ -15,11 +15,11 @@ namespace arris::view {
 
 struct ServerSettings {
   std::string host = "127.0.0.1";
-  std::uint16_t port = 0;           // 0: any that is free
-  bool or_any_port = false;         // if that port is taken
-  bool once = false;                // end when the last client has left
+  std::uint16_t port = 0;    // 0: any that is free
+  bool or_any_port = false;  // if that port is taken
+  bool once = false;         // end when the last client has left
   bool allow_upload = false;
-  bool watch = false;               // show the model's file again when it changes
+  bool watch = false;  // show the model's file again when it changes
   std::filesystem::path watched;
 };
 

@@ -113,8 +113,9 @@ RoundingSettings with_method(RoundingSettings settings, std::optional<RoundMetho
 
 void check_object(const ViewModel& model, std::uint32_t id) {
   if (id < model.scene.objects.size()) return;
-  throw Error(Error::Kind::input, "",
-              fmt::format("there is no object {}; the model has {}", id, model.scene.objects.size()));
+  throw Error(
+      Error::Kind::input, "",
+      fmt::format("there is no object {}; the model has {}", id, model.scene.objects.size()));
 }
 
 void check_camera(const ViewModel& model, const Camera& camera) {
@@ -270,8 +271,8 @@ Camera frame_view(const ViewModel& model, const ViewEdits& edits, FrameView::Fro
   const GroundFrame frame = make_ground_frame(model.scene.up);
   switch (from) {
     case FrameView::From::here:
-      return frame_scene_from(visible, edits.camera.position - edits.camera.target,
-                              edits.camera.up, fov);
+      return frame_scene_from(visible, edits.camera.position - edits.camera.target, edits.camera.up,
+                              fov);
     case FrameView::From::front:
       return frame_scene_from(visible, -frame.north, frame.up, fov);
     case FrameView::From::right:

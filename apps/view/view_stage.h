@@ -33,7 +33,7 @@ struct ViewModel {
 struct ObjectEdit {
   bool visible = true;
   std::optional<RoundingSettings> rounding;  // empty: the scene's
-  bool has_edited_radius = false;  // of `rounding`; the rest follows the scene's rounding
+  bool has_edited_radius = false;            // of `rounding`; the rest follows the scene's rounding
   Affine3d world_from_object;
   friend bool operator==(const ObjectEdit&, const ObjectEdit&) = default;
 };
@@ -68,7 +68,8 @@ Camera frame_view(const ViewModel& model, const ViewEdits& edits, FrameView::Fro
 
 struct StagedView {
   Scene scene;
-  std::vector<std::optional<std::uint32_t>> index_of;  // by the model's objects: where they are in the scene
+  std::vector<std::optional<std::uint32_t>>
+      index_of;  // by the model's objects: where they are in the scene
 };
 // method: instead of the edits' own, for comparison.
 StagedView stage_view(const ViewModel& model, const ViewEdits& edits,

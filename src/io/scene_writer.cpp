@@ -150,7 +150,8 @@ struct EnvironmentMembers {
 
 struct LightMembers {
   Members operator()(const PointLight& l) const {
-    return {{"type", text("point")}, {"position", vector(l.position)}, {"color", vector(l.intensity)}};
+    return {
+        {"type", text("point")}, {"position", vector(l.position)}, {"color", vector(l.intensity)}};
   }
   Members operator()(const SpotLight& l) const {
     return {{"type", text("spot")},
@@ -166,12 +167,9 @@ struct LightMembers {
             {"color", vector(l.irradiance)}};
   }
   Members operator()(const AreaLight& l) const {
-    return {{"type", text("area")},
-            {"corner", vector(l.corner)},
-            {"edge_u", vector(l.edge_u)},
-            {"edge_v", vector(l.edge_v)},
-            {"color", vector(l.radiance)},
-            {"visible", l.visible_to_camera ? "true" : "false"}};
+    return {{"type", text("area")},        {"corner", vector(l.corner)},
+            {"edge_u", vector(l.edge_u)},  {"edge_v", vector(l.edge_v)},
+            {"color", vector(l.radiance)}, {"visible", l.visible_to_camera ? "true" : "false"}};
   }
 };
 
@@ -230,18 +228,17 @@ std::string write_toml_scene(const Scene& scene, std::span<const WrittenObject> 
                              std::span<const std::string> comments) {
   std::string out;
   for (std::string comment : comments) {
-    std::ranges::replace_if(comment, [](char c) { return static_cast<unsigned char>(c) < ' '; },
-                            ' ');
+    std::ranges::replace_if(
+        comment, [](char c) { return static_cast<unsigned char>(c) < ' '; }, ' ');
     out += "# " + comment + "\n";
   }
   out += fmt::format("up = {}\n", vector(scene.up));
   const ImageSettings& image = scene.image;
-  out += table("[image]",
-               {{"size", fmt::format("[{}, {}]", image.width_px, image.height_px)},
-                {"samples", number(image.samples_per_pixel)},
-                {"max_depth", number(image.max_depth)},
-                {"exposure", number(image.exposure)},
-                {"filter", text(name_of(image.filter))}});
+  out += table("[image]", {{"size", fmt::format("[{}, {}]", image.width_px, image.height_px)},
+                           {"samples", number(image.samples_per_pixel)},
+                           {"max_depth", number(image.max_depth)},
+                           {"exposure", number(image.exposure)},
+                           {"filter", text(name_of(image.filter))}});
   if (scene.camera) {
     out += table("[camera]", {{"position", vector(scene.camera->position)},
                               {"target", vector(scene.camera->target)},

@@ -15,9 +15,9 @@ namespace arris {
 
 // One [[object]].
 struct WrittenObject {
-  std::string file;                       // as it is to stand in the file
-  std::string name;                       // empty: the file's
-  std::optional<Material> material;       // in place of the file's own; without textures
+  std::string file;                  // as it is to stand in the file
+  std::string name;                  // empty: the file's
+  std::optional<Material> material;  // in place of the file's own; without textures
   std::optional<RoundingSettings> rounding;
   Affine3d world_from_file;
 };

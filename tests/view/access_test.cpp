@@ -61,7 +61,8 @@ TEST(ViewAccess, takes_its_own_page_only) {
 TEST(ViewAccess, uploads_keep_nothing_but_a_known_extension) {
   EXPECT_EQ(upload_extension("my part.STL"), ".stl");
   EXPECT_EQ(upload_extension("../../etc/passwd.obj"), ".obj");
-  for (const char* name : {"scene.toml", "part.scad", "part", "", "part.exe", ".stl/..", "a.stl\n"}) {
+  for (const char* name :
+       {"scene.toml", "part.scad", "part", "", "part.exe", ".stl/..", "a.stl\n"}) {
     EXPECT_FALSE(upload_extension(name)) << name;
   }
 }

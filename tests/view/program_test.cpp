@@ -6,6 +6,7 @@
 #include <sys/wait.h>
 
 #include <csignal>
+#include <initializer_list>
 #include <memory>
 #include <string>
 

@@ -79,7 +79,7 @@ class ViewServerTest : public testing::Test {
     return socket;
   }
   static json camera(std::uint32_t seq, double x) {
-    return {{"type", "camera"},     {"seq", seq},        {"position", {x, -5, 3}},
+    return {{"type", "camera"},    {"seq", seq},      {"position", {x, -5, 3}},
             {"target", {1, 0, 0}}, {"up", {0, 0, 1}}, {"fov", 35}};
   }
   static Frame read_until_seq(WebSocket& socket, std::uint32_t seq) {
@@ -95,8 +95,8 @@ class ViewServerTest : public testing::Test {
     }
   }
   static Rgba8Image decode(const Frame& frame) {
-    return decode_jpeg({reinterpret_cast<const std::uint8_t*>(frame.jpeg.data()), frame.jpeg.size()},
-                       "frame");
+    return decode_jpeg(
+        {reinterpret_cast<const std::uint8_t*>(frame.jpeg.data()), frame.jpeg.size()}, "frame");
   }
 
   std::unique_ptr<ViewServer> server_;
@@ -128,8 +128,10 @@ TEST_F(ViewServerTest, refuses_other_hosts_and_origins) {
   start();
   EXPECT_EQ(test::fetch(port_, {.target = with_token("/"), .host = "evil.example"}).status, 403);
   EXPECT_EQ(test::fetch(port_, {.target = with_token("/"), .host = "localhost:9"}).status, 200);
-  EXPECT_EQ(test::fetch(port_, {.target = with_token("/picture.png"),
-                                .origin = "http://evil.example"}).status, 403);
+  EXPECT_EQ(
+      test::fetch(port_, {.target = with_token("/picture.png"), .origin = "http://evil.example"})
+          .status,
+      403);
   EXPECT_EQ(WebSocket(port_, token_, "http://evil.example").status(), 403);
   EXPECT_EQ(WebSocket(port_, "0123456789abcdef0123456789abcdef").status(), 403);
   EXPECT_EQ(WebSocket(port_, token_, fmt::format("http://127.0.0.1:{}", port_)).status(), 101);
@@ -137,10 +139,11 @@ TEST_F(ViewServerTest, refuses_other_hosts_and_origins) {
 
 TEST_F(ViewServerTest, refuses_requests_that_are_too_long) {
   start();
-  const auto long_header =
-      test::fetch(port_, {.target = with_token("/"), .more = "X: " + std::string(20000, 'a') + "\r\n"});
+  const auto long_header = test::fetch(
+      port_, {.target = with_token("/"), .more = "X: " + std::string(20000, 'a') + "\r\n"});
   EXPECT_NE(long_header.status, 200);
-  const auto upload = test::fetch(port_, {.method = "POST", .target = with_token("/model?name=a.stl"),
+  const auto upload = test::fetch(port_, {.method = "POST",
+                                          .target = with_token("/model?name=a.stl"),
                                           .more = "Content-Length: 99999999999\r\n"});
   EXPECT_EQ(upload.status, 413);
 }
@@ -318,8 +321,12 @@ TEST_F(ViewServerTest, compares_roundings_along_a_line) {
 TEST_F(ViewServerTest, says_what_is_under_the_mouse) {
   start();
   auto socket = look();
-  socket->send({{"type", "camera"},     {"seq", 1},        {"position", {2, -5, 0}},
-                {"target", {2, 0, 0}}, {"up", {0, 0, 1}}, {"fov", 35}});
+  socket->send({{"type", "camera"},
+                {"seq", 1},
+                {"position", {2, -5, 0}},
+                {"target", {2, 0, 0}},
+                {"up", {0, 0, 1}},
+                {"fov", 35}});
   read_until_seq(*socket, 1);
   socket->send({{"type", "pick"}, {"seq", 2}, {"at", {80, 45}}});
   const json hit = socket->read_text("picked");
@@ -361,8 +368,11 @@ TEST_F(ViewServerTest, makes_beam_pictures) {
 
 TEST_F(ViewServerTest, takes_models_only_where_that_is_allowed) {
   start();
-  EXPECT_EQ(test::fetch(port_, {.method = "POST", .target = with_token("/model?name=a.stl"),
-                                .body = "solid"}).status, 403);
+  EXPECT_EQ(
+      test::fetch(port_,
+                  {.method = "POST", .target = with_token("/model?name=a.stl"), .body = "solid"})
+          .status,
+      403);
 }
 
 TEST_F(ViewServerTest, shows_models_that_are_dropped) {
@@ -370,13 +380,14 @@ TEST_F(ViewServerTest, shows_models_that_are_dropped) {
   auto socket = look();
   EXPECT_EQ(socket->read_text("scene")["upload"], true);
   const auto post = [&](const std::string& name) {
-    return test::fetch(port_, {.method = "POST", .target = with_token("/model?name=" + name),
-                               .body = "solid"});
+    return test::fetch(
+        port_, {.method = "POST", .target = with_token("/model?name=" + name), .body = "solid"});
   };
   EXPECT_EQ(post("a.toml").status, 415);
   EXPECT_EQ(post("").status, 415);
-  EXPECT_EQ(test::fetch(port_, {.method = "POST", .target = "/model?name=a.stl", .body = "s"}).status,
-            403);
+  EXPECT_EQ(
+      test::fetch(port_, {.method = "POST", .target = "/model?name=a.stl", .body = "s"}).status,
+      403);
   const auto bad = post("bad.stl");
   EXPECT_EQ(bad.status, 422);
   EXPECT_THAT(bad.body, HasSubstr("holds nothing"));

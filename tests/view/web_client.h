@@ -41,8 +41,7 @@ class Connection {
   // False: the other end has closed.
   bool send(const std::string& bytes) const {
     for (std::size_t sent = 0; sent < bytes.size();) {
-      const ssize_t count =
-          ::send(socket_, bytes.data() + sent, bytes.size() - sent, MSG_NOSIGNAL);
+      const ssize_t count = ::send(socket_, bytes.data() + sent, bytes.size() - sent, MSG_NOSIGNAL);
       if (count <= 0) return false;
       sent += std::size_t(count);
     }
@@ -107,8 +106,8 @@ struct Request {
 
 inline Response fetch(std::uint16_t port, const Request& request) {
   Connection connection(port);
-  std::string text = fmt::format("{} {} HTTP/1.1\r\nHost: {}\r\n{}", request.method,
-                                 request.target, request.host, request.more);
+  std::string text = fmt::format("{} {} HTTP/1.1\r\nHost: {}\r\n{}", request.method, request.target,
+                                 request.host, request.more);
   if (!request.origin.empty()) text += fmt::format("Origin: {}\r\n", request.origin);
   if (!request.body.empty()) text += fmt::format("Content-Length: {}\r\n", request.body.size());
   connection.send(text + "\r\n" + request.body);
@@ -134,7 +133,8 @@ class WebSocket {
   WebSocket(std::uint16_t port, const std::string& token, const std::string& origin = "")
       : connection_(port) {
     std::string text = fmt::format(
-        "GET /ws?t={} HTTP/1.1\r\nHost: 127.0.0.1:{}\r\nUpgrade: websocket\r\nConnection: Upgrade\r\n"
+        "GET /ws?t={} HTTP/1.1\r\nHost: 127.0.0.1:{}\r\nUpgrade: websocket\r\nConnection: "
+        "Upgrade\r\n"
         "Sec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==\r\nSec-WebSocket-Version: 13\r\n",
         token, port);
     if (!origin.empty()) text += fmt::format("Origin: {}\r\n", origin);
