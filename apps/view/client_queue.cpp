@@ -33,11 +33,19 @@ void ClientQueue::put(const ViewText& text) {
   texts_.push_back({text.type, text.text});
 }
 
-void ClientQueue::acknowledge(std::uint32_t frame) {
-  if (in_flight_ == frame) in_flight_.reset();
+void ClientQueue::acknowledge(std::uint32_t frame, Clock::time_point now) {
+  if (in_flight_ != frame) return;
+  in_flight_.reset();
+  answer_time_ = (3 * answer_time_ + (now - sent_)) / 4;
 }
 
-std::optional<std::variant<ClientQueue::Text, ClientQueue::Frame>> ClientQueue::take(Kinds kinds) {
+std::optional<Clock::time_point> ClientQueue::next_send() const {
+  if (frame_) return std::nullopt;
+  return in_flight_ ? sent_ + answer_time_ : Clock::time_point::min();
+}
+
+std::optional<std::variant<ClientQueue::Text, ClientQueue::Frame>> ClientQueue::take(
+    Kinds kinds, Clock::time_point now) {
   if (!texts_.empty()) {
     std::string text = std::move(texts_.front().text);
     texts_.pop_front();
@@ -45,6 +53,7 @@ std::optional<std::variant<ClientQueue::Text, ClientQueue::Frame>> ClientQueue::
   }
   if (kinds == Kinds::texts || !frame_ || in_flight_) return std::nullopt;
   in_flight_ = frame_->number;
+  sent_ = now;
   return std::exchange(frame_, nullptr);
 }
 

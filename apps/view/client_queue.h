@@ -22,16 +22,17 @@ class ClientQueue {
 
   void put(const ViewText& text);
   void put(std::shared_ptr<const ViewFrame> frame) { frame_ = std::move(frame); }
-  void acknowledge(std::uint32_t frame);
+  void acknowledge(std::uint32_t frame, Clock::time_point now);
 
   using Text = std::string;
   using Frame = std::shared_ptr<const ViewFrame>;
   // What is to be sent next, texts first.
   enum class Kinds { texts, all };
-  std::optional<std::variant<Text, Frame>> take(Kinds kinds);
+  std::optional<std::variant<Text, Frame>> take(Kinds kinds, Clock::time_point now);
 
-  // Whether a new frame would be sent at once.
-  [[nodiscard]] bool is_ready() const { return !in_flight_ && !frame_; }
+  // When a new frame could be sent, as far as can be told from how long acknowledgements took; nothing while one
+  // waits already.
+  [[nodiscard]] std::optional<Clock::time_point> next_send() const;
 
  private:
   struct Waiting {
@@ -41,6 +42,8 @@ class ClientQueue {
   std::deque<Waiting> texts_;
   Frame frame_;                             // the newest that was not sent
   std::optional<std::uint32_t> in_flight_;  // sent and not acknowledged
+  Clock::time_point sent_;
+  Clock::duration answer_time_{};  // from sending to acknowledgement, of late
 };
 
 inline constexpr std::size_t kFrameHeaderBytes = 32;

@@ -32,7 +32,7 @@ class ClientSession {
   virtual ~ClientSession() = default;
   virtual void put(const ViewText& text) = 0;
   virtual void put(std::shared_ptr<const ViewFrame> frame) = 0;
-  [[nodiscard]] virtual bool is_ready() const = 0;
+  [[nodiscard]] virtual std::optional<Clock::time_point> next_send() const = 0;
   virtual void close() = 0;
 };
 

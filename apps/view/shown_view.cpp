@@ -83,9 +83,12 @@ bool shows_enough(const EdgePointStats& stats) {
   return stats.traced || stats.unresolved * 50 < pixels;
 }
 
-std::unique_ptr<EdgePointEngine> make_engine(const ScenePtr& scene, const ViewEdits& edits,
+std::unique_ptr<EdgePointEngine> make_engine(const ViewModel& model, const ScenePtr& scene,
+                                             const ViewEdits& edits,
                                              const BuildSettings& settings) {
   EdgePointSettings engine_settings;
+  // The ground's fade is smooth enough without rays of its own in each pixel.
+  engine_settings.sharp_textures = !model.scene.textures.empty();
   engine_settings.shader = edits.shader;
   engine_settings.threads = settings.threads;
   engine_settings.trace_below_ms = settings.trace_below_ms;
@@ -120,8 +123,8 @@ ShownView build_view(std::shared_ptr<const ViewModel> model, const ViewEdits& ed
   const ScenePtr other = make_compared(*model, edits, view.staged, main, settings, use);
   // Its meshes are the prepared scene's, too; what else it holds is of no use any more.
   view.staged.scene = {};
-  view.engine = make_engine(main, edits, settings);
-  if (other) view.compared = make_engine(other, edits, settings);
+  view.engine = make_engine(*model, main, edits, settings);
+  if (other) view.compared = make_engine(*model, other, edits, settings);
   view.bounds = first_bounds(*model);
   view.model = std::move(model);
   return view;

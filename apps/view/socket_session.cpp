@@ -47,7 +47,9 @@ class SocketSession : public ClientSession, public std::enable_shared_from_this<
     queue_->put(std::move(frame));
     write();
   }
-  [[nodiscard]] bool is_ready() const override { return greeted_ && queue_->is_ready(); }
+  [[nodiscard]] std::optional<Clock::time_point> next_send() const override {
+    return greeted_ ? queue_->next_send() : std::nullopt;
+  }
 
   void close() override {
     if (closing_) return;
@@ -84,7 +86,7 @@ class SocketSession : public ClientSession, public std::enable_shared_from_this<
       if (socket_.got_binary()) throw Error(Error::Kind::input, "message", "must be text");
       const ClientMessage message = parse_message(text);
       if (const auto* ack = std::get_if<Ack>(&message.what)) {
-        queue_->acknowledge(ack->frame);
+        queue_->acknowledge(ack->frame, Clock::now());
         write();
         return server_.update_ready();
       }
@@ -105,8 +107,9 @@ class SocketSession : public ClientSession, public std::enable_shared_from_this<
   void write() {
     if (writing_ || closing_) return;
     // Nobody gets frames before saying how large they should be, and hearing of what.
-    auto next =
-        queue_->take(greeted_ && has_scene_ ? ClientQueue::Kinds::all : ClientQueue::Kinds::texts);
+    const Clock::time_point now = Clock::now();
+    auto next = queue_->take(
+        greeted_ && has_scene_ ? ClientQueue::Kinds::all : ClientQueue::Kinds::texts, now);
     if (!next) return;
     writing_ = true;
     if (auto* text = std::get_if<ClientQueue::Text>(&*next)) {
@@ -115,7 +118,7 @@ class SocketSession : public ClientSession, public std::enable_shared_from_this<
       return send(asio::buffer(text_));
     }
     frame_ = std::move(std::get<ClientQueue::Frame>(*next));
-    text_ = frame_header(*frame_, client_, Clock::now());
+    text_ = frame_header(*frame_, client_, now);
     socket_.binary(true);
     send(std::array<asio::const_buffer, 2>{asio::buffer(text_), asio::buffer(frame_->jpeg)});
   }

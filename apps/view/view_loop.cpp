@@ -78,14 +78,14 @@ bool ViewRenderer::Loop::put(Input input) {
   return true;
 }
 
-void ViewRenderer::Loop::set_ready(bool ready) {
+void ViewRenderer::Loop::set_next_send(std::optional<Clock::time_point> time) {
   {
     const std::lock_guard lock(mutex_);
-    if (ready_ == ready) return;
-    ready_ = ready;
-    woken_ = woken_ || ready;
+    if (next_send_ == time) return;
+    next_send_ = time;
+    woken_ = true;
   }
-  if (ready) wake_.notify_all();
+  wake_.notify_all();
 }
 
 // The loop.
@@ -94,12 +94,12 @@ void ViewRenderer::Loop::run() {
   while (!stopped_) {
     wait();
     std::deque<std::function<void()>> tasks;
-    bool ready = false;
+    std::optional<Clock::time_point> send;
     {
       const std::lock_guard lock(mutex_);
       tasks.swap(tasks_);
       woken_ = false;
-      ready = ready_;
+      send = next_send_;
     }
     for (const auto& task : tasks) task();
     tasks.clear();
@@ -107,7 +107,7 @@ void ViewRenderer::Loop::run() {
     finish_build();
     follow_edits();
     poll_beam();
-    if (wants_frame() && Clock::now() >= frame_due(ready)) make_frame();
+    if (wants_frame() && Clock::now() >= frame_due(send)) make_frame();
     if (scene_dirty_ && Clock::now() >= scene_sent_ + kSceneInterval) send_scene();
   }
 }
@@ -116,16 +116,19 @@ bool ViewRenderer::Loop::wants_frame() const {
   return !clients_.empty() && !settled_;
 }
 
-Clock::time_point ViewRenderer::Loop::frame_due(bool ready) const {
-  return ready ? pace_.next_frame()
-               : std::max(pace_.next_frame(), pace_.last_frame() + kUnreadyWait);
+// So that it is there when it can be sent.
+Clock::time_point ViewRenderer::Loop::frame_due(std::optional<Clock::time_point> send) const {
+  if (!send) return std::max(pace_.next_frame(), pace_.last_frame() + kUnreadyWait);
+  if (*send == Clock::time_point::min()) return pace_.next_frame();
+  const std::chrono::duration<double, std::milli> work(pace_.frame_ms());
+  return std::max(pace_.next_frame(), *send - std::chrono::duration_cast<Clock::duration>(work));
 }
 
 void ViewRenderer::Loop::wait() {
   std::unique_lock lock(mutex_);
   const auto is_woken = [&] { return woken_ || stopped_; };
   std::optional<Clock::time_point> until;
-  if (wants_frame()) until = frame_due(ready_);
+  if (wants_frame()) until = frame_due(next_send_);
   if (scene_dirty_) {
     const Clock::time_point due = scene_sent_ + kSceneInterval;
     until = until ? std::min(*until, due) : due;

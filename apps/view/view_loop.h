@@ -32,7 +32,7 @@ class ViewRenderer::Loop {
   // From any thread.
   void post(std::function<void()> task);
   bool put(Input input);
-  void set_ready(bool ready);
+  void set_next_send(std::optional<Clock::time_point> time);
 
   // Of the loop's own thread, posted.
   void join(ClientId client);
@@ -75,7 +75,7 @@ class ViewRenderer::Loop {
   void undo_asked(const std::string& error);
 
   [[nodiscard]] bool wants_frame() const;
-  [[nodiscard]] Clock::time_point frame_due(bool ready) const;
+  [[nodiscard]] Clock::time_point frame_due(std::optional<Clock::time_point> send) const;
   [[nodiscard]] bool is_shader_idle();
   void make_frame();
   void publish(bool moving, bool converged);
@@ -95,7 +95,8 @@ class ViewRenderer::Loop {
   std::condition_variable wake_;
   ViewMailbox mailbox_;
   std::deque<std::function<void()>> tasks_;
-  bool ready_ = true, woken_ = false;
+  std::optional<Clock::time_point> next_send_;
+  bool woken_ = false;
   std::atomic<bool> stopped_ = false;
 
   ViewRendererSettings settings_;

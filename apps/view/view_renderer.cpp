@@ -27,8 +27,8 @@ bool ViewRenderer::put(ClientId client, const ClientMessage& message) {
   return loop_->put(std::move(input));
 }
 
-void ViewRenderer::set_ready(bool ready) {
-  loop_->set_ready(ready);
+void ViewRenderer::set_next_send(std::optional<Clock::time_point> time) {
+  loop_->set_next_send(time);
 }
 
 void ViewRenderer::save_picture(std::function<void(std::vector<std::uint8_t>)> done) {

@@ -70,8 +70,8 @@ class ViewRenderer {
   void leave(ClientId client);
   // False: too many inputs wait.
   bool put(ClientId client, const ClientMessage& message);
-  // Whether there is a client that takes a frame now.
-  void set_ready(bool ready);
+  // When the first client will take a frame, or took it, had it been there; nothing: all have one that waits.
+  void set_next_send(std::optional<Clock::time_point> time);
   // `done` is called by the renderer's thread.
   void save_picture(std::function<void(std::vector<std::uint8_t> png)> done);
   void save_scene(SceneSaved done);

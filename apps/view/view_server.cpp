@@ -180,12 +180,13 @@ void ViewServer::Impl::end_soon() {
 }
 
 void ViewServer::Impl::update_ready() {
-  bool ready = false;
+  std::optional<Clock::time_point> first;
   for (const auto& [id, client] : clients_) {
     const auto session = client.lock();
-    ready = ready || (session && session->is_ready());
+    const auto next = session ? session->next_send() : std::nullopt;
+    if (next && (!first || *next < *first)) first = next;
   }
-  renderer_->set_ready(ready);
+  renderer_->set_next_send(first);
 }
 
 // Twice the same time, so that the file is not read while it is being written.

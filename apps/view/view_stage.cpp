@@ -196,7 +196,8 @@ struct Apply {
   void operator()(const SetQuality&) const {}
 
  private:
-  void set_radius(ObjectEdit& object, const Radius& radius) const {
+  // The radius may be that of the object itself.
+  void set_radius(ObjectEdit& object, Radius radius) const {
     object.rounding = edits.rounding;
     object.rounding->radius = radius;
   }

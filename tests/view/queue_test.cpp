@@ -25,20 +25,35 @@ std::uint32_t number_of(const std::variant<ClientQueue::Text, ClientQueue::Frame
 
 TEST(ClientQueue, sends_one_frame_until_it_is_acknowledged_and_then_the_newest) {
   ClientQueue queue(1);
-  EXPECT_TRUE(queue.is_ready());
+  const Clock::time_point now = Clock::now();
   queue.put(make_frame(1));
-  EXPECT_FALSE(queue.is_ready());
-  EXPECT_EQ(number_of(*queue.take(Kinds::all)), 1U);
+  EXPECT_EQ(number_of(*queue.take(Kinds::all, now)), 1U);
   for (std::uint32_t i = 2; i < 50; ++i) queue.put(make_frame(i));
-  EXPECT_FALSE(queue.take(Kinds::all));
-  queue.acknowledge(7);  // another one
-  EXPECT_FALSE(queue.take(Kinds::all));
-  queue.acknowledge(1);
-  EXPECT_EQ(number_of(*queue.take(Kinds::all)), 49U);
-  EXPECT_FALSE(queue.is_ready());
-  queue.acknowledge(49);
-  EXPECT_TRUE(queue.is_ready());
-  EXPECT_FALSE(queue.take(Kinds::all));
+  EXPECT_FALSE(queue.take(Kinds::all, now));
+  queue.acknowledge(7, now);  // another one
+  EXPECT_FALSE(queue.take(Kinds::all, now));
+  queue.acknowledge(1, now);
+  EXPECT_EQ(number_of(*queue.take(Kinds::all, now)), 49U);
+  queue.acknowledge(49, now);
+  EXPECT_FALSE(queue.take(Kinds::all, now));
+}
+
+TEST(ClientQueue, expects_acknowledgements_when_they_came_before) {
+  ClientQueue queue(1);
+  Clock::time_point now = Clock::now();
+  constexpr auto kAnswer = std::chrono::milliseconds(80);
+  EXPECT_EQ(queue.next_send(), Clock::time_point::min());
+  for (std::uint32_t i = 1; i < 40; ++i) {
+    queue.put(make_frame(i));
+    EXPECT_FALSE(queue.next_send());
+    queue.take(Kinds::all, now);
+    if (i > 30) {
+      EXPECT_LT(now + kAnswer - *queue.next_send(), std::chrono::milliseconds(1));
+    }
+    now += kAnswer;
+    queue.acknowledge(i, now);
+    EXPECT_EQ(queue.next_send(), Clock::time_point::min());
+  }
 }
 
 TEST(ClientQueue, holds_few_texts_however_many_come) {
@@ -49,7 +64,7 @@ TEST(ClientQueue, holds_few_texts_however_many_come) {
   }
   int texts = 0, states = 0;
   std::string last;
-  while (auto text = queue.take(Kinds::all)) {
+  while (auto text = queue.take(Kinds::all, Clock::now())) {
     last = std::get<std::string>(*text);
     ++texts;
     states += last.starts_with("state") ? 1 : 0;
@@ -64,8 +79,8 @@ TEST(ClientQueue, takes_what_is_for_its_client) {
   queue.put(ViewText{"picked", "mine", 3, {}});
   queue.put(ViewText{"picked", "another's", 4, {}});
   queue.put(ViewText{"scene", "all but me", {}, 3});
-  EXPECT_EQ(std::get<std::string>(*queue.take(Kinds::texts)), "mine");
-  EXPECT_FALSE(queue.take(Kinds::texts));
+  EXPECT_EQ(std::get<std::string>(*queue.take(Kinds::texts, Clock::now())), "mine");
+  EXPECT_FALSE(queue.take(Kinds::texts, Clock::now()));
 }
 
 TEST(ClientQueue, frame_headers_are_as_the_protocol_says) {

@@ -35,7 +35,10 @@ ViewModel make_boxes() {
     object.world_from_object.translation = {2.0 * i, 0, 0};
     model.scene.objects.push_back(object);
   }
-  model.scene.rounding = RoundingSettings{RoundMethod::exact, 0.1};
+  RoundingSettings rounding;
+  rounding.method = RoundMethod::exact;
+  rounding.radius = 0.1;
+  model.scene.rounding = rounding;
   model.scene.image.width_px = 160;
   model.scene.image.height_px = 90;
   model.scene.image.samples_per_pixel = 4;
@@ -107,7 +110,7 @@ class ViewServerTest : public testing::Test {
 
 TEST_F(ViewServerTest, serves_the_page_to_those_who_know_the_token) {
   start();
-  const auto page = test::fetch(port_, {.target = with_token("/")});
+  const auto page = test::fetch(port_, Request(with_token("/")));
   EXPECT_EQ(page.status, 200);
   EXPECT_THAT(page.body, HasSubstr("<html"));
   EXPECT_THAT(page.head, HasSubstr("Content-Security-Policy: default-src 'self'"));
@@ -116,21 +119,20 @@ TEST_F(ViewServerTest, serves_the_page_to_those_who_know_the_token) {
   EXPECT_THAT(page.head, HasSubstr("Cache-Control: no-store"));
   for (const char* target : {"/", "/?t=", "/?t=0123456789abcdef0123456789abcdef", "/ws",
                              "/picture.png", "/scene.toml", "/beam.png"}) {
-    EXPECT_EQ(test::fetch(port_, {.target = target}).status, 403) << target;
+    EXPECT_EQ(test::fetch(port_, Request(target)).status, 403) << target;
   }
   for (const char* target : {"/../index.html", "/etc/passwd", "/web/index.html", "/nothing"}) {
-    EXPECT_EQ(test::fetch(port_, {.target = with_token(target)}).status, 404) << target;
+    EXPECT_EQ(test::fetch(port_, Request(with_token(target))).status, 404) << target;
   }
-  EXPECT_EQ(test::fetch(port_, {.method = "PUT", .target = with_token("/")}).status, 405);
+  EXPECT_EQ(test::fetch(port_, Request(with_token("/")).by("PUT")).status, 405);
 }
 
 TEST_F(ViewServerTest, refuses_other_hosts_and_origins) {
   start();
-  EXPECT_EQ(test::fetch(port_, {.target = with_token("/"), .host = "evil.example"}).status, 403);
-  EXPECT_EQ(test::fetch(port_, {.target = with_token("/"), .host = "localhost:9"}).status, 200);
+  EXPECT_EQ(test::fetch(port_, Request(with_token("/")).at_host("evil.example")).status, 403);
+  EXPECT_EQ(test::fetch(port_, Request(with_token("/")).at_host("localhost:9")).status, 200);
   EXPECT_EQ(
-      test::fetch(port_, {.target = with_token("/picture.png"), .origin = "http://evil.example"})
-          .status,
+      test::fetch(port_, Request(with_token("/picture.png")).from("http://evil.example")).status,
       403);
   EXPECT_EQ(WebSocket(port_, token_, "http://evil.example").status(), 403);
   EXPECT_EQ(WebSocket(port_, "0123456789abcdef0123456789abcdef").status(), 403);
@@ -139,12 +141,12 @@ TEST_F(ViewServerTest, refuses_other_hosts_and_origins) {
 
 TEST_F(ViewServerTest, refuses_requests_that_are_too_long) {
   start();
-  const auto long_header = test::fetch(
-      port_, {.target = with_token("/"), .more = "X: " + std::string(20000, 'a') + "\r\n"});
+  const auto long_header =
+      test::fetch(port_, Request(with_token("/")).with("X: " + std::string(20000, 'a') + "\r\n"));
   EXPECT_NE(long_header.status, 200);
-  const auto upload = test::fetch(port_, {.method = "POST",
-                                          .target = with_token("/model?name=a.stl"),
-                                          .more = "Content-Length: 99999999999\r\n"});
+  const auto upload = test::fetch(
+      port_,
+      Request(with_token("/model?name=a.stl")).by("POST").with("Content-Length: 99999999999\r\n"));
   EXPECT_EQ(upload.status, 413);
 }
 
@@ -342,16 +344,16 @@ TEST_F(ViewServerTest, saves_the_picture_and_the_scene) {
   start();
   auto socket = look();
   read_until_converged(*socket);
-  const auto picture = test::fetch(port_, {.target = with_token("/picture.png")});
+  const auto picture = test::fetch(port_, Request(with_token("/picture.png")));
   EXPECT_EQ(picture.status, 200);
   EXPECT_THAT(picture.head, HasSubstr("image/png"));
   const Rgba8Image png = decode_png(
       {reinterpret_cast<const std::uint8_t*>(picture.body.data()), picture.body.size()}, "png");
   EXPECT_EQ(png.width_px, 160);
-  const auto scene = test::fetch(port_, {.target = with_token("/scene.toml")});
+  const auto scene = test::fetch(port_, Request(with_token("/scene.toml")));
   EXPECT_EQ(scene.status, 200);
   EXPECT_THAT(scene.body, HasSubstr("file = \"boxes.obj\""));
-  EXPECT_EQ(test::fetch(port_, {.target = with_token("/beam.png")}).status, 404);
+  EXPECT_EQ(test::fetch(port_, Request(with_token("/beam.png"))).status, 404);
 }
 
 TEST_F(ViewServerTest, makes_beam_pictures) {
@@ -363,31 +365,26 @@ TEST_F(ViewServerTest, makes_beam_pictures) {
     ASSERT_FALSE(beam.contains("error")) << beam;
     if (beam["ready"].get<bool>()) break;
   }
-  EXPECT_EQ(test::fetch(port_, {.target = with_token("/beam.png")}).status, 200);
+  EXPECT_EQ(test::fetch(port_, Request(with_token("/beam.png"))).status, 200);
 }
 
 TEST_F(ViewServerTest, takes_models_only_where_that_is_allowed) {
   start();
-  EXPECT_EQ(
-      test::fetch(port_,
-                  {.method = "POST", .target = with_token("/model?name=a.stl"), .body = "solid"})
-          .status,
-      403);
+  EXPECT_EQ(test::fetch(port_, Request(with_token("/model?name=a.stl")).post("solid")).status, 403);
 }
 
 TEST_F(ViewServerTest, shows_models_that_are_dropped) {
-  start({.allow_upload = true});
+  ServerSettings settings;
+  settings.allow_upload = true;
+  start(settings);
   auto socket = look();
   EXPECT_EQ(socket->read_text("scene")["upload"], true);
   const auto post = [&](const std::string& name) {
-    return test::fetch(
-        port_, {.method = "POST", .target = with_token("/model?name=" + name), .body = "solid"});
+    return test::fetch(port_, Request(with_token("/model?name=" + name)).post("solid"));
   };
   EXPECT_EQ(post("a.toml").status, 415);
   EXPECT_EQ(post("").status, 415);
-  EXPECT_EQ(
-      test::fetch(port_, {.method = "POST", .target = "/model?name=a.stl", .body = "s"}).status,
-      403);
+  EXPECT_EQ(test::fetch(port_, Request("/model?name=a.stl").post("s")).status, 403);
   const auto bad = post("bad.stl");
   EXPECT_EQ(bad.status, 422);
   EXPECT_THAT(bad.body, HasSubstr("holds nothing"));
@@ -401,7 +398,9 @@ TEST_F(ViewServerTest, shows_models_that_are_dropped) {
 }
 
 TEST_F(ViewServerTest, ends_when_the_last_client_has_left) {
-  start({.once = true});
+  ServerSettings settings;
+  settings.once = true;
+  start(settings);
   {
     auto one = look();
     one->read_frame();

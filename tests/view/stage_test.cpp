@@ -22,7 +22,10 @@ ViewModel make_model(std::size_t objects) {
     object.world_from_object.translation = {3.0 * double(i), 0, 0};
     model.scene.objects.push_back(object);
   }
-  model.scene.rounding = RoundingSettings{RoundMethod::exact, 0.25};
+  RoundingSettings rounding;
+  rounding.method = RoundMethod::exact;
+  rounding.radius = 0.25;
+  model.scene.rounding = rounding;
   return model;
 }
 

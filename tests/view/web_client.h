@@ -100,8 +100,15 @@ struct Response {
 };
 
 struct Request {
-  std::string method = "GET", target = "/", host = "127.0.0.1", origin, body;
+  std::string target, method = "GET", host = "127.0.0.1", origin, body;
   std::string more;  // header lines
+
+  explicit Request(std::string to) : target(std::move(to)) {}
+  Request& at_host(const std::string& value) { return host = value, *this; }
+  Request& from(const std::string& value) { return origin = value, *this; }
+  Request& with(const std::string& lines) { return more = lines, *this; }
+  Request& by(const std::string& value) { return method = value, *this; }
+  Request& post(const std::string& what) { return body = what, by("POST"); }
 };
 
 inline Response fetch(std::uint16_t port, const Request& request) {
