@@ -63,7 +63,7 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
     parser_.body_limit(kMostUploadBytes);
   }
   ~HttpSession() {
-    if (uploading_) server_.end_upload();
+    end_upload();
     if (counted_) server_.remove_connection();
   }
   HttpSession(const HttpSession&) = delete;
@@ -221,6 +221,10 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
     return name.substr(name.size() > kMostNameBytes ? name.size() - kMostNameBytes : 0);
   }
 
+  void end_upload() {
+    if (std::exchange(uploading_, false)) server_.end_upload();
+  }
+
   // Answers.
 
   // From the renderer's thread.
@@ -231,6 +235,8 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
   }
 
   void answer(Answer what) {
+    // Who has heard of one model's end may send the next.
+    end_upload();
     response_ = {};
     response_.version(11);
     response_.result(what.status);
