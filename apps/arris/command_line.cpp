@@ -11,15 +11,6 @@
 namespace arris::program {
 namespace {
 
-// Names of the design that this build does not have.
-struct Missing {
-  std::string_view name;
-  std::string_view remedy;
-};
-constexpr Missing kMissingCommands[] = {
-    {"view", "render a picture with arris render"},
-};
-
 [[noreturn]] void fail(const std::string& what) {
   throw Error(Error::Kind::input, "", what);
 }
@@ -132,11 +123,6 @@ const CommandRow& find_command(const std::string& name) {
   for (const CommandRow& command : commands()) {
     if (command.name == name) return command;
     known.push_back(command.name);
-  }
-  for (const Missing& missing : kMissingCommands) {
-    if (name == missing.name) {
-      fail(fmt::format("arris {} is not in this build; {}", name, missing.remedy));
-    }
   }
   const std::string hint = did_you_mean(name, known);
   fail(fmt::format("there is no command \"{}\"{}", name,

@@ -52,7 +52,7 @@ struct CommandRow {
 
 std::span<const CommandRow> commands();
 
-// Throws for unknown names and for those that this build does not have.
+// Throws for unknown names.
 const CommandRow& find_command(const std::string& name);
 
 Arguments parse_arguments(const CommandRow& command, const std::vector<std::string>& words);

@@ -59,8 +59,8 @@ INSTANTIATE_TEST_SUITE_P(
     Usage, Misused,
     testing::Values(
         Misuse{"rendr cube.stl", "there is no command \"rendr\"; did you mean \"render\"?\n"},
-        Misuse{"view cube.stl",
-               "arris view is not in this build; render a picture with arris render\n"},
+        Misuse{"view cube.stl --prot 1",
+               "arris view has no option --prot; did you mean \"--port\"?\n"},
         Misuse{"render cube.stl", "arris render needs an output file: -o picture.png\n"},
         Misuse{"render -o a.png", "arris render needs INPUT; arris render --help shows examples\n"},
         Misuse{"render cube.stl b.stl -o a.png",
