@@ -1,0 +1,128 @@
+// files.js — saving pictures and scenes, opening models, and the beam picture.
+
+const byId = (id) => document.getElementById(id);
+
+export class Files {
+  #session;
+  #connection;
+  #messages;
+
+  constructor({ session, connection, messages }) {
+    this.#session = session;
+    this.#connection = connection;
+    this.#messages = messages;
+    byId("save-picture").addEventListener("click", () => this.savePicture());
+    byId("save-scene").addEventListener("click", () => this.saveScene());
+    byId("open-file").addEventListener("click", () => (this.#mayOpen() ? byId("file").click() : undefined));
+    byId("file").addEventListener("change", ({ target }) => {
+      this.#open([...target.files]);
+      target.value = "";
+    });
+    this.#connectDrop();
+    this.#connectBeam();
+  }
+
+  savePicture() {
+    return this.#save("/picture.png", "png", "picture");
+  }
+
+  saveScene() {
+    return this.#save("/scene.toml", "toml", "scene");
+  }
+
+  /** Fetched rather than linked to, so that an error becomes a message instead of a file. */
+  async #save(path, extension, what) {
+    try {
+      const answer = await fetch(this.#connection.url(path), { cache: "no-store" });
+      if (!answer.ok) throw new Error((await answer.text()).trim() || `the server answered ${answer.status}`);
+      const link = document.createElement("a");
+      link.href = URL.createObjectURL(await answer.blob());
+      const stem = (this.#session.scene?.name ?? "arris").replace(/\.[^.]*$/, "").replace(/[^\w.-]+/g, "_");
+      link.download = `${stem || "arris"}.${extension}`;
+      link.click();
+      setTimeout(() => URL.revokeObjectURL(link.href), 10000);
+      this.#messages.info(`Saved the ${what} as ${link.download}`);
+    } catch (error) {
+      this.#messages.error(`The ${what} could not be saved: ${error.message}`, "Try again when the server answers.");
+    }
+  }
+
+  #mayOpen() {
+    if (this.#session.scene?.upload) return true;
+    this.#messages.error("This server does not take models", "Start it with: arris view FILE --allow-upload");
+    return false;
+  }
+
+  async #open(files) {
+    if (files.length === 0 || !this.#mayOpen()) return;
+    if (files.length > 1) {
+      this.#messages.error("One file at a time", "Models of several files: put them into one .glb.");
+      return;
+    }
+    const [file] = files;
+    const opening = this.#messages.lasting("info", `Opening ${file.name} …`);
+    try {
+      const url = `${this.#connection.url("/model")}&name=${encodeURIComponent(file.name)}`;
+      const answer = await fetch(url, { method: "POST", body: file });
+      if (!answer.ok) throw new Error((await answer.text()).trim() || `the server answered ${answer.status}`);
+    } catch (error) {
+      this.#messages.error(`${file.name} was not opened: ${error.message}`, "The model shown before stays.");
+    } finally {
+      opening.remove();
+    }
+  }
+
+  #connectDrop() {
+    const hint = byId("drop-hint");
+    // Entering a child leaves its parent: only the depth tells when the pointer has left the page.
+    let depth = 0;
+    const hasFiles = (event) => event.dataTransfer?.types.includes("Files");
+    window.addEventListener("dragenter", (event) => {
+      if (!hasFiles(event)) return;
+      depth += 1;
+      hint.hidden = false;
+    });
+    window.addEventListener("dragleave", (event) => {
+      if (hasFiles(event) && (depth -= 1) <= 0) hint.hidden = true;
+    });
+    window.addEventListener("dragover", (event) => event.preventDefault());
+    window.addEventListener("drop", (event) => {
+      event.preventDefault();
+      depth = 0;
+      hint.hidden = true;
+      this.#open([...(event.dataTransfer?.files ?? [])]);
+    });
+  }
+
+  #connectBeam() {
+    const work = byId("beam-work");
+    const progress = byId("beam-progress");
+    const look = byId("beam-show");
+    const start = byId("beam-start");
+    start.addEventListener("click", () => {
+      this.#session.send("beam");
+      work.hidden = false;
+      look.hidden = true;
+      progress.hidden = false;
+      progress.value = 0;
+    });
+    this.#connection.addEventListener("beam", ({ detail }) => {
+      work.hidden = Boolean(detail.error);
+      progress.value = detail.done;
+      progress.hidden = detail.ready;
+      look.hidden = !detail.ready;
+      start.disabled = !detail.ready && !detail.error;
+      if (detail.error) this.#messages.error(`No beam picture: ${detail.error}`, detail.remedy);
+      if (detail.ready) this.#messages.info("The beam picture is done", "Look at it in the panel, under “Picture and file”.");
+    });
+    this.#connection.addEventListener("status", () => (start.disabled = false));
+    look.addEventListener("click", () => this.#showBeam());
+    byId("beam-save").addEventListener("click", () => this.#save("/beam.png", "beam.png", "beam picture"));
+  }
+
+  #showBeam() {
+    // A number that never repeats: the picture before has the same address.
+    byId("beam-picture").src = `${this.#connection.url("/beam.png")}&at=${Date.now()}`;
+    byId("beam-dialog").showModal();
+  }
+}

@@ -1,0 +1,58 @@
+// messages.js — notices that appear over the picture, are read aloud, and can be dismissed.
+
+const PASSING_MS = 6000;
+
+export class Messages {
+  #list;
+
+  /** `list` is a live region. */
+  constructor(list) {
+    this.#list = list;
+  }
+
+  /** An error stays until it is dismissed; the same one is not shown twice. `remedy` says what to do. */
+  error(text, remedy) {
+    this.#show("error", text, remedy);
+  }
+
+  /** Passes by itself. */
+  info(text, remedy) {
+    const item = this.#show("info", text, remedy);
+    setTimeout(() => item.remove(), PASSING_MS);
+  }
+
+  /** Stays until it is dismissed or `remove()` is called on what is returned. */
+  lasting(kind, text, remedy) {
+    return this.#show(kind, text, remedy);
+  }
+
+  #show(kind, text, remedy) {
+    let item = [...this.#list.children].find((shown) => shown.dataset.text === text);
+    if (!item) {
+      item = this.#make(kind, text);
+      this.#list.append(item);
+    }
+    item.querySelector("span").textContent = remedy ?? "";
+    // The picture stays visible however much goes wrong.
+    while (this.#list.children.length > 4) this.#list.firstElementChild.remove();
+    return item;
+  }
+
+  #make(kind, text) {
+    const item = document.createElement("div");
+    item.className = `message ${kind}`;
+    item.dataset.text = text;
+    const body = document.createElement("div");
+    const what = document.createElement("strong");
+    what.textContent = text;
+    body.append(what, document.createElement("span"));
+    const dismiss = document.createElement("button");
+    dismiss.type = "button";
+    dismiss.className = "icon";
+    dismiss.setAttribute("aria-label", "Dismiss this message");
+    dismiss.textContent = "×";
+    dismiss.onclick = () => item.remove();
+    item.append(body, dismiss);
+    return item;
+  }
+}

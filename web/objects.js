@@ -1,0 +1,157 @@
+// objects.js — the list of objects: choose, hide, isolate, look at, own radius.
+
+import { formatNumber } from "./panels.js";
+
+// Longer lists are narrowed by name instead of scrolled.
+const SHOWN = 200;
+
+const byId = (id) => document.getElementById(id);
+
+export class Objects extends EventTarget {
+  #session;
+  #chosen = null;
+  #isolated = null;
+  #first = new Map();
+
+  /** Dispatches "chosen"; `lookAt(object)` moves the camera. */
+  constructor(session, lookAt) {
+    super();
+    this.#session = session;
+    session.addEventListener("scene", ({ detail }) => this.#take(detail?.isNew));
+    byId("object-filter").addEventListener("input", () => this.#list());
+    byId("show-all").addEventListener("click", () => this.showAll());
+    byId("object-frame").addEventListener("click", () => lookAt(this.chosen));
+    byId("object-isolate").addEventListener("click", () => this.isolate());
+    byId("object-back").addEventListener("click", () => this.putBack());
+    byId("object-radius").addEventListener("change", ({ target }) => {
+      if (target.checkValidity()) this.#edit(this.#chosen, { radius: target.value === "" ? null : Number(target.value) });
+    });
+    byId("object-radius-clear").addEventListener("click", () => this.#edit(this.#chosen, { radius: null }));
+  }
+
+  /** The chosen object or undefined. */
+  get chosen() {
+    return this.#session.object(this.#chosen);
+  }
+
+  choose(id) {
+    this.#chosen = id;
+    if (id !== null) byId("objects-section").open = true;
+    this.#list();
+    this.#details();
+    byId("object-list").querySelector(".chosen")?.scrollIntoView({ block: "nearest" });
+    this.dispatchEvent(new Event("chosen"));
+  }
+
+  /** Only the chosen one, or all again. */
+  isolate() {
+    if (!this.chosen) return;
+    const id = this.#isolated === this.#chosen ? null : this.#chosen;
+    this.#session.send("isolate", { id }, (scene) => {
+      for (const object of scene.objects) object.visible = id === null || object.id === id;
+    });
+    this.#isolated = id;
+    this.#details();
+  }
+
+  hide(id = this.#chosen) {
+    const object = this.#session.object(id);
+    if (object) this.#edit(id, { visible: !object.visible });
+  }
+
+  showAll() {
+    this.#isolated = null;
+    this.#session.send("isolate", { id: null }, (scene) => scene.objects.forEach((object) => (object.visible = true)));
+    this.#details();
+  }
+
+  /** `by`: a vector in the scene, from where `start` says that the object was. */
+  move(id, start, by) {
+    const matrix = start.matrix.map((row, at) => (at < 3 ? [row[0], row[1], row[2], row[3] + by[at]] : [...row]));
+    const center = start.center.map((x, at) => x + by[at]);
+    this.#edit(id, { matrix }, { center });
+  }
+
+  putBack() {
+    const first = this.#first.get(this.#chosen);
+    if (first) this.#edit(this.#chosen, { matrix: first.matrix }, { center: first.center });
+  }
+
+  /** `known`: what follows from the change, which only the server would tell otherwise. */
+  #edit(id, fields, known = {}) {
+    this.#session.send(
+      "object",
+      { id, ...fields },
+      (scene) => Object.assign(scene.objects.find((object) => object.id === id) ?? {}, fields, known),
+      `object ${id}`,
+    );
+  }
+
+  #take(isNew) {
+    const { objects } = this.#session.scene ?? {};
+    if (!objects) return;
+    if (isNew) {
+      this.#first = new Map(objects.map(({ id, matrix, center }) => [id, { matrix, center }]));
+      this.#isolated = null;
+      byId("object-filter").hidden = objects.length < 12;
+      byId("object-filter").value = "";
+      if (!this.chosen) this.#chosen = null;
+    }
+    this.#list();
+    this.#details();
+  }
+
+  #list() {
+    const objects = this.#session.scene?.objects ?? [];
+    const sought = byId("object-filter").value.trim().toLowerCase();
+    const found = objects.filter(({ name }) => name.toLowerCase().includes(sought));
+    const shown = found.slice(0, SHOWN);
+    byId("object-count").textContent = String(objects.length);
+    const list = byId("object-list");
+    if (list.children.length !== shown.length) list.replaceChildren(...shown.map(() => this.#makeRow()));
+    shown.forEach((object, at) => this.#fillRow(list.children[at], object));
+    const rest = byId("object-rest");
+    rest.hidden = found.length <= SHOWN && found.length > 0;
+    rest.textContent = found.length ? `${found.length - SHOWN} more; find them by name` : "No object has such a name";
+  }
+
+  /** Rows are kept while the list changes, so that the focus stays where it is. */
+  #makeRow() {
+    const row = document.createElement("li");
+    const name = document.createElement("button");
+    name.type = "button";
+    name.className = "name";
+    name.onclick = () => this.choose(Number(row.dataset.id) === this.#chosen ? null : Number(row.dataset.id));
+    const eye = document.createElement("button");
+    eye.type = "button";
+    eye.className = "eye";
+    eye.onclick = () => this.hide(Number(row.dataset.id));
+    row.append(name, eye);
+    return row;
+  }
+
+  #fillRow(row, { id, name, visible }) {
+    const isChosen = id === this.#chosen;
+    row.dataset.id = id;
+    row.className = `${isChosen ? "chosen" : ""} ${visible ? "" : "gone"}`;
+    const [choose, eye] = row.children;
+    choose.textContent = name;
+    choose.title = name;
+    choose.setAttribute("aria-pressed", String(isChosen));
+    eye.textContent = visible ? "Hide" : "Show";
+    eye.setAttribute("aria-label", `${visible ? "Hide" : "Show"} ${name}`);
+  }
+
+  #details() {
+    const object = this.chosen;
+    byId("object-details").hidden = !object;
+    if (!object) return;
+    byId("object-name").textContent = object.name;
+    const size = object.size.map((x) => formatNumber(x, 3)).join(" × ");
+    byId("object-facts").textContent = `${object.triangles.toLocaleString("en")} triangles, ${size}`;
+    const radius = byId("object-radius");
+    if (document.activeElement !== radius) radius.value = typeof object.radius === "number" ? formatNumber(object.radius) : "";
+    radius.placeholder = typeof object.radius === "string" ? object.radius : "as all";
+    byId("object-isolate").setAttribute("aria-pressed", String(this.#isolated === object.id));
+  }
+}

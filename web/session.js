@@ -1,0 +1,75 @@
+// session.js — the scene as this page knows it, between the controls and the connection.
+//
+// A change is shown at once and sent; what the server tells of the same thing is not taken over while a change is on
+// its way, or a slider would jump back under the hand.
+
+// A message that changes nothing brings no frame; after this long the server's word counts again.
+const PENDING_MS = 2000;
+
+export class Session extends EventTarget {
+  #connection;
+  #shownSeq = 0;
+  #sentAt = new Map();
+  #timer = null;
+
+  /** Dispatches "scene" when controls should show `scene` anew. */
+  constructor(connection) {
+    super();
+    this.#connection = connection;
+    this.scene = null;
+    connection.addEventListener("scene", ({ detail }) => this.#take(detail));
+  }
+
+  /** Frames tell which changes have arrived. */
+  setShownSeq(seq) {
+    this.#shownSeq = Math.max(this.#shownSeq, seq);
+  }
+
+  isPending(type) {
+    const sentAt = this.#sentAt.get(type) ?? -Infinity;
+    return this.#connection.newestSeq(type) > this.#shownSeq && performance.now() - sentAt < PENDING_MS;
+  }
+
+  /** Sends a message of this type; `change` makes the same change in the page's own scene. */
+  send(type, fields, change = null, key = type) {
+    const seq = this.#connection.send(type, fields, key);
+    this.#sentAt.set(type, performance.now());
+    if (this.scene && change) {
+      change(this.scene);
+      this.dispatchEvent(new Event("scene"));
+    }
+    clearTimeout(this.#timer);
+    this.#timer = setTimeout(() => this.dispatchEvent(new Event("scene")), PENDING_MS + 100);
+    return seq;
+  }
+
+  object(id) {
+    return this.scene?.objects.find((object) => object.id === id);
+  }
+
+  #take(scene) {
+    const before = this.scene;
+    if (before) {
+      for (const [type, names] of Object.entries(KEYS_OF)) {
+        if (!this.isPending(type)) continue;
+        for (const name of names) scene[name] = before[name];
+      }
+    }
+    this.scene = scene;
+    const isNew = !before || before.name !== scene.name || before.objects.length !== scene.objects.length;
+    this.dispatchEvent(new CustomEvent("scene", { detail: { isNew, fromServer: true } }));
+  }
+}
+
+/** What each message changes in a scene. */
+const KEYS_OF = {
+  rounding: ["rounding"],
+  light: ["lighting", "strength", "rotation"],
+  material: ["material"],
+  ground: ["ground"],
+  shader: ["shader"],
+  compare: ["compare"],
+  overlay: ["overlay"],
+  object: ["objects"],
+  isolate: ["objects"],
+};

@@ -1,0 +1,57 @@
+// stats.js — figures of the picture: a line over it, and more in the panel.
+
+import { formatNumber } from "./panels.js";
+
+const INTEGRATORS = { "edge-point": "edge-point", traced: "traced" };
+const percent = (part) => `${Math.round(part * 100)} %`;
+const count = (number) => number.toLocaleString("en");
+
+function set(id, text, title) {
+  const element = document.getElementById(id);
+  if (element.textContent !== text) element.textContent = text;
+  if (title) element.parentElement.title = title;
+}
+
+export class Stats {
+  #latency = null;
+
+  /** A frame has been drawn; latency from input to picture in milliseconds, or null. */
+  setFrame(header, latency) {
+    set("stat-samples", header.moving ? "moving" : header.converged ? `${count(header.samples)} ✓` : count(header.samples));
+    if (latency === null) return;
+    // Single frames jump about more than can be read.
+    this.#latency = this.#latency === null ? latency : 0.7 * this.#latency + 0.3 * latency;
+    set("stat-latency", `${Math.round(this.#latency)} ms`, `from input to picture; ${Math.round(header.serverMs)} ms in the server`);
+  }
+
+  setState(state) {
+    set("stat-integrator", INTEGRATORS[state.integrator] ?? state.integrator);
+    set("stat-seconds", `${state.seconds < 10 ? state.seconds.toFixed(1) : Math.round(state.seconds)} s`);
+    set("stat-fps", `${Math.round(state.fps)} fps`, `${formatNumber(state.frame_ms, 3)} ms a frame in the server`);
+    set("stat-fresh", percent(state.new_samples));
+    const { edges, classes } = state;
+    this.#fill([
+      ["Triangles", count(state.triangles)],
+      ["Rounded edges", count(state.rounded_edges)],
+      ["Silhouettes", count(edges.silhouette)],
+      ["Sharp edges", count(edges.sharp)],
+      ["Shadow edges", count(edges.shadow)],
+      ["Empty pixels", percent(classes.empty)],
+      ["Simple pixels", percent(classes.simple)],
+      ["Complex pixels", percent(classes.complex)],
+    ]);
+  }
+
+  #fill(rows) {
+    const list = document.getElementById("figures");
+    list.replaceChildren(
+      ...rows.flatMap(([name, value]) => {
+        const term = document.createElement("dt");
+        term.textContent = name;
+        const figure = document.createElement("dd");
+        figure.textContent = value;
+        return [term, figure];
+      }),
+    );
+  }
+}
