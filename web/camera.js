@@ -168,5 +168,5 @@ export class Camera {
   }
 }
 
-/** The up axis that a scene's first camera suggests. */
-export const upAxis = (camera) => snapToAxis(camera.up);
+/** What is up in a scene, or what its first camera takes for it. */
+export const upAxis = (scene) => snapToAxis(scene.up ?? scene.camera.up);

@@ -92,6 +92,10 @@ export class Connection extends EventTarget {
     return seq;
   }
 
+  get lastSeq() {
+    return this.#seq;
+  }
+
   /** The newest number sent for a type, or 0. */
   newestSeq(type) {
     return this.#newest.get(type) ?? 0;

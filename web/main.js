@@ -83,7 +83,7 @@ picture.addEventListener("drawn", ({ detail: header }) => {
   session.setShownSeq(header.seq);
   view.setShownSeq(header.seq);
   stats.setFrame(header, connection.takeLatency(header.seq));
-  Object.assign(canvas.dataset, { frame: header.frame, seq: header.seq, still: header.moving ? "" : "still" });
+  Object.assign(canvas.dataset, { frame: header.frame, seq: header.seq, converged: header.converged });
 });
 view.addEventListener("camera", drawMarks);
 objects.addEventListener("chosen", drawMarks);
@@ -120,7 +120,10 @@ function tellTrouble(state, retryInSeconds) {
 
 connection.addEventListener("frame", ({ detail }) => picture.show(detail));
 connection.addEventListener("state", ({ detail }) => stats.setState(detail));
-connection.addEventListener("error", ({ detail }) => messages.error(detail.text, detail.remedy));
+connection.addEventListener("error", ({ detail }) => {
+  session.setRefused(detail.seq);
+  messages.error(detail.text, detail.remedy);
+});
 connection.addEventListener("busy", ({ detail }) => {
   byId("busy").hidden = !detail.what;
   byId("busy-text").textContent = detail.what ?? "";

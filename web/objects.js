@@ -148,7 +148,10 @@ export class Objects extends EventTarget {
     if (!object) return;
     byId("object-name").textContent = object.name;
     const size = object.size.map((x) => formatNumber(x, 3)).join(" × ");
-    byId("object-facts").textContent = `${object.triangles.toLocaleString("en")} triangles, ${size}`;
+    const facts = [size];
+    if (object.triangles > 0) facts.unshift(`${object.triangles.toLocaleString("en")} triangles`);
+    if (object.rounded > 0) facts.push(`rounded by ${formatNumber(object.rounded, 3)}`);
+    byId("object-facts").textContent = facts.join(", ");
     const radius = byId("object-radius");
     if (document.activeElement !== radius) radius.value = typeof object.radius === "number" ? formatNumber(object.radius) : "";
     radius.placeholder = typeof object.radius === "string" ? object.radius : "as all";

@@ -32,6 +32,15 @@ export function parseRadius(text) {
   return percent ? `${Number(number)}%` : Number(number);
 }
 
+/** What a radius comes to: that of the most rounded object, or null if none is rounded. */
+export function usedRadius(radius, objects) {
+  if (typeof radius === "number") return radius;
+  const largest = Math.max(0, ...objects.filter((object) => object.radius === null).map(({ rounded }) => rounded ?? 0));
+  return largest > 0 ? largest : null;
+}
+
+const formatRadius = (radius) => (typeof radius === "number" ? formatNumber(radius, 3) : radius);
+
 /** `getScale` may change with the scene; `change` is called while the slider moves and when a number is entered. */
 function connectNumber(id, getScale, change) {
   const slider = byId(`${id}-slider`);
@@ -145,15 +154,13 @@ export class Panels {
     this.#updateMaterials(scene);
   }
 
-  #updateRounding({ rounding, bounds }) {
+  #updateRounding({ rounding, bounds, objects }) {
     this.#radiusScale = radiusScale(bounds);
     const { radius } = rounding;
-    // What automatic and relative radii come to, where the server says so.
-    const length_ = typeof radius === "number" ? radius : rounding.used;
+    const used = usedRadius(radius, objects);
     const slider = byId("radius-slider");
-    if (typeof length_ === "number") slider.value = this.#radiusScale.toSlider(length_);
-    const shown = typeof radius === "string" && radius !== "auto" ? radius : length_;
-    const text = shown === undefined ? "auto" : typeof shown === "number" ? formatNumber(shown, 3) : shown;
+    if (used !== null) slider.value = this.#radiusScale.toSlider(used);
+    const text = radius === "auto" && used !== null ? formatNumber(used, 3) : formatRadius(radius);
     slider.setAttribute("aria-valuetext", text);
     const field = byId("radius");
     if (document.activeElement !== field || field.validity.valid) field.value = text;

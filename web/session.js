@@ -22,7 +22,12 @@ export class Session extends EventTarget {
 
   /** Frames tell which changes have arrived. */
   setShownSeq(seq) {
-    this.#shownSeq = Math.max(this.#shownSeq, seq);
+    this.#shownSeq = Math.max(this.#shownSeq, Math.min(seq, this.#connection.lastSeq));
+  }
+
+  /** A change was refused: what the server tells next counts. */
+  setRefused(seq) {
+    this.setShownSeq(seq ?? Infinity);
   }
 
   isPending(type) {

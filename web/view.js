@@ -55,7 +55,7 @@ export class View extends EventTarget {
 
   #take(isNew) {
     const { scene } = this.#session;
-    if (isNew) this.camera = new Camera(scene.up ?? upAxis(scene.camera));
+    if (isNew) this.camera = new Camera(upAxis(scene));
     else if (this.isActive || this.#session.isPending("camera")) return;
     this.camera.set(scene.camera);
     this.camera.setLimits(scene.bounds);

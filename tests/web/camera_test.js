@@ -187,8 +187,8 @@ test("a clone goes its own way", () => {
   near(camera.target, [0.2, 0.1, 0.3]);
 });
 
-test("takes the scene's up axis from its first camera", () => {
-  assert.deepEqual(upAxis({ up: [0.01, 0.02, 0.999] }), [0, 0, 1]);
-  assert.deepEqual(upAxis({ up: [0, 2, 0] }), [0, 1, 0]);
+test("takes the up axis from the scene, or else from its first camera", () => {
+  assert.deepEqual(upAxis({ up: [0, 2, 0], camera: { up: [0, 0, 1] } }), [0, 1, 0]);
+  assert.deepEqual(upAxis({ camera: { up: [0.01, 0.02, 0.999] } }), [0, 0, 1]);
   near(upAxis({ up: [1, 1, 0] }), [Math.SQRT1_2, Math.SQRT1_2, 0]);
 });
