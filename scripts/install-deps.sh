@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# install-deps.sh — installs the Debian 12 packages that Arris is built, tested and checked with.
-# Does nothing, and asks no server, when all of them are there. Works as root or through sudo.
+# install-deps.sh — installs the Debian 12 packages that Arris is built, tested and checked with, and Playwright-core
+# for the tests in a browser. Does nothing, and asks no server, when all of them are there. Works as root or through sudo.
 set -euo pipefail
 
 packages=(
@@ -23,13 +23,29 @@ packages=(
   # tests
   libgtest-dev libgmock-dev librapidcheck-dev
 )
+# What tests/web needs. Programs rather than packages, because they often come from elsewhere.
+for program in node:nodejs npm:npm chromium:chromium; do
+  command -v "${program%%:*}" >/dev/null || packages+=("${program##*:}")
+done
 
 missing=()
 for package in "${packages[@]}"; do
   state=$(dpkg-query --show --showformat='${db:Status-Status}' "$package" 2>/dev/null || true)
   [ "$state" = installed ] || missing+=("$package")
 done
+
+# Playwright-core, which drives the browser; npm leaves a copy of the lock file beside what it has installed.
+install_web_tests() {
+  local folder
+  folder=$(dirname "$0")/../tests/web
+  [ ! "$folder/package-lock.json" -nt "$folder/node_modules/.package-lock.json" ] && return
+  echo "install-deps: installing what tests/web needs"
+  npm ci --prefix "$folder" --ignore-scripts --no-audit --no-fund
+  touch "$folder/node_modules/.package-lock.json"
+}
+
 if [ ${#missing[@]} -eq 0 ]; then
+  install_web_tests
   echo "install-deps: all ${#packages[@]} packages are installed"
   exit 0
 fi
@@ -46,3 +62,4 @@ echo "install-deps: installing ${missing[*]}"
 "${as_root[@]}" apt-get update -q
 "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive \
   apt-get install -q -y --no-install-recommends "${missing[@]}"
+install_web_tests

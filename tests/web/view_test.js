@@ -1,0 +1,436 @@
+// view_test.js — the viewer's page in a real browser, against the real server.
+import assert from "node:assert/strict";
+import fs from "node:fs";
+import http from "node:http";
+import { after, before, test } from "node:test";
+import { plateAndCube, plateStl } from "./models.js";
+import * as viewer from "./viewer.js";
+
+const model = viewer.writeModel("plate_and_cube.obj", plateAndCube);
+let server;
+
+before(async () => {
+  await viewer.launchBrowser();
+  server = await viewer.startServer(model);
+});
+after(async () => {
+  await viewer.closeBrowser();
+  await server?.stop();
+});
+
+/** A test with a page of its own, in which no script may fail. All share a server: the view is put back first. */
+function pageTest(name, options, body) {
+  test(name, { timeout: 4 * viewer.PATIENCE_MS }, async () => {
+    const opened = await viewer.openPage(server.url, options);
+    const { page, context, traffic, errors } = opened;
+    try {
+      await viewer.firstFrame(page);
+      await page.keyboard.press("9");
+      await viewer.until("the view from the corner", () => traffic.sent.some(({ type }) => type === "frame_view"));
+      await viewer.shown(page, traffic);
+      await body(opened);
+      assert.deepEqual(errors, []);
+    } catch (error) {
+      await viewer.screenshot(page, `failed ${name}`.replaceAll(" ", "_")).catch(() => {});
+      throw error;
+    } finally {
+      await context.close();
+    }
+  });
+}
+
+const scenes = (traffic) => traffic.received.filter(({ type }) => type === "scene");
+const sentOf = (traffic, wanted) => traffic.sent.filter(({ type }) => type === wanted);
+
+pageTest("draws a picture that is not empty", {}, async ({ page }) => {
+  assert.ok(viewer.deviation(await viewer.pictureOf(page)) > 5);
+  assert.equal(await page.locator("#model-name").textContent(), "plate_and_cube.obj");
+  assert.equal(await page.locator("#status").textContent(), "connected");
+  await viewer.until("figures", async () => (await page.locator("#stat-integrator").textContent()) !== "–");
+});
+
+pageTest("orbit, pan, zoom and roll change the picture", {}, async ({ page, traffic }) => {
+  const gestures = [
+    ["orbit", () => viewer.middleOf(page).then((at) => viewer.drag(page, at, [120, 30]))],
+    ["pan", () => viewer.middleOf(page).then((at) => viewer.drag(page, at, [80, -60], { button: "middle" }))],
+    ["zoom", () => viewer.middleOf(page).then((at) => viewer.drag(page, at, [0, -80], { button: "right" }))],
+    ["wheel", () => page.mouse.wheel(0, 400)],
+    [
+      "roll",
+      async () => {
+        const [x, y] = await viewer.middleOf(page);
+        await page.keyboard.down("Control");
+        await viewer.drag(page, [x + 100, y], [0, 90]);
+        await page.keyboard.up("Control");
+      },
+    ],
+  ];
+  for (const [name, act] of gestures) {
+    const before = await viewer.pictureOf(page);
+    const sent = sentOf(traffic, "camera").length;
+    await act();
+    await viewer.until(`cameras sent by ${name}`, () => sentOf(traffic, "camera").length > sent);
+    await viewer.shown(page, traffic);
+    const change = viewer.difference(before, await viewer.pictureOf(page));
+    assert.ok(change > 1.5, `${name} changed the picture by ${change} only`);
+  }
+});
+
+pageTest("the radius slider changes the picture while it is dragged", {}, async ({ page, traffic }) => {
+  await viewer.converged(page);
+  const before = await viewer.pictureOf(page);
+  const box = await page.locator("#radius-slider").boundingBox();
+  await page.mouse.move(box.x + box.width * 0.2, box.y + box.height / 2);
+  await page.mouse.down();
+  await page.mouse.move(box.x + box.width * 0.95, box.y + box.height / 2, { steps: 10 });
+  await viewer.until("radii sent", () => sentOf(traffic, "rounding").length > 1);
+  await viewer.shown(page, traffic);
+  await page.mouse.up();
+  await viewer.shown(page, traffic);
+  await viewer.converged(page);
+  const change = viewer.difference(before, await viewer.pictureOf(page));
+  assert.ok(change > 0.2, `changed by ${change} only`);
+  assert.ok(Number(await page.locator("#radius").inputValue()) > 0.5);
+
+  await page.locator("#radius").fill("8%");
+  await page.locator("#radius").press("Enter");
+  await viewer.until("a radius in percent", () => sentOf(traffic, "rounding").at(-1).radius === "8%");
+  await page.locator("#radius-auto").click();
+  await viewer.until("automatic again", () => sentOf(traffic, "rounding").at(-1).radius === "auto");
+  await viewer.shown(page, traffic);
+});
+
+pageTest("a split view differs left and right of its line", {}, async ({ page, traffic }) => {
+  await page.locator("#radius").fill("1");
+  await page.locator("#radius").press("Enter");
+  await page.locator("#compare").selectOption("none");
+  await page.locator("#split").waitFor();
+  await viewer.shown(page, traffic);
+  await viewer.converged(page);
+  const half = await viewer.pictureOf(page);
+  await viewer.screenshot(page, "split");
+  // To the right end by hand: then all is rounded.
+  const { width } = await page.locator("#stage").boundingBox();
+  await viewer.drag(page, await viewer.middleOf(page, "#split"), [width, 0]);
+  await viewer.shown(page, traffic);
+  await viewer.converged(page);
+  const whole = await viewer.pictureOf(page);
+  const left = viewer.difference(half, whole, 0, 0.45);
+  const right = viewer.difference(half, whole, 0.55, 1);
+  assert.ok(right > 3 * left + 0.1, `left ${left}, right ${right}`);
+  assert.equal(await page.locator("#split").getAttribute("aria-valuenow"), "100");
+  await page.locator("#compare").selectOption("");
+  await page.locator("#radius-auto").click();
+  await viewer.shown(page, traffic);
+});
+
+pageTest("click chooses an object, and dragging with Alt moves it", {}, async ({ page, traffic }) => {
+  await page.keyboard.press("7");
+  await viewer.until("the view from above", () => sentOf(traffic, "frame_view").length > 1);
+  await viewer.shown(page, traffic);
+  const { left, top, height } = await page.locator("#picture").evaluate((canvas) => {
+    const area = canvas.getBoundingClientRect();
+    return { left: area.left + area.width / 2, top: area.top + area.height / 2, height: area.height };
+  });
+  // The cube stands at the plate's lower left corner.
+  const camera = await viewer.until("the camera", () => scenes(traffic).at(-1)?.camera);
+  const depth = camera.position[2] - 8;
+  const perUnit = height / (2 * depth * Math.tan((camera.fov * Math.PI) / 360));
+  const cube = [left - 6.75 * perUnit, top + 6.75 * perUnit];
+  await page.mouse.click(...cube);
+  await viewer.until("the cube is chosen", async () => (await page.locator("#object-name").textContent()) === "cube");
+  await page.locator("#object-details").waitFor();
+  await viewer.screenshot(page, "chosen");
+
+  const before = await viewer.pictureOf(page);
+  await page.keyboard.down("Alt");
+  await page.mouse.move(...cube);
+  await page.mouse.down();
+  await page.mouse.move(cube[0] + 4 * perUnit, cube[1], { steps: 5 });
+  await viewer.until("a move", () => sentOf(traffic, "object").length > 0);
+  await page.mouse.up();
+  await page.keyboard.up("Alt");
+  await viewer.shown(page, traffic);
+  const { matrix } = sentOf(traffic, "object").at(-1);
+  assert.ok(Math.abs(matrix[0][3] - 4) < 0.3, `moved by ${matrix[0][3]}`);
+  assert.ok(viewer.difference(before, await viewer.pictureOf(page)) > 0.5);
+
+  await page.locator("#object-back").click();
+  await viewer.until("put back", () => sentOf(traffic, "object").at(-1).matrix[0][3] === 0);
+  await viewer.shown(page, traffic);
+});
+
+pageTest("objects can be hidden and isolated", {}, async ({ page, traffic }) => {
+  await page.locator("#objects-section summary").click();
+  await page.getByRole("button", { name: "Hide cube" }).click();
+  await viewer.until("hidden", () => scenes(traffic).at(-1)?.objects.some(({ visible }) => !visible));
+  await page.locator("#show-all").click();
+  await viewer.until("shown", () => scenes(traffic).at(-1).objects.every(({ visible }) => visible));
+  await page.locator("#object-list .name", { hasText: "cube" }).click();
+  await page.locator("#object-isolate").click();
+  await viewer.until("isolated", () => {
+    const objects = scenes(traffic).at(-1).objects;
+    return objects.length > 1 && objects.every(({ name, visible }) => visible === (name === "cube"));
+  });
+  await page.locator("#object-isolate").click();
+  await viewer.until("all again", () => scenes(traffic).at(-1).objects.every(({ visible }) => visible));
+  await viewer.shown(page, traffic);
+});
+
+pageTest("light, material, ground and overlay change the picture", {}, async ({ page, traffic }) => {
+  const changes = [
+    ["lighting", () => page.locator("#lighting").getByText("Sky").click()],
+    ["material", () => page.locator("#material").selectOption({ index: 1 })],
+    ["ground", () => page.locator("#ground").click()],
+    ["overlay", () => page.keyboard.press("e")],
+  ];
+  for (const [name, act] of changes) {
+    const before = await viewer.pictureOf(page);
+    const sent = traffic.sent.filter(({ type }) => type !== "ack").length;
+    await act();
+    await viewer.until(`${name} sent`, () => traffic.sent.filter(({ type }) => type !== "ack").length > sent);
+    await viewer.shown(page, traffic);
+    const change = viewer.difference(before, await viewer.pictureOf(page));
+    assert.ok(change > 0.5, `${name} changed the picture by ${change} only`);
+  }
+  await page.keyboard.press("e");
+  await page.locator("#ground").click();
+  await page.locator("#material").selectOption("");
+  await page.locator("#lighting").getByText("Studio").click();
+  await viewer.shown(page, traffic);
+});
+
+pageTest("saves the picture and the scene", {}, async ({ page }) => {
+  for (const [button, ending, begin] of [
+    ["#save-picture", ".png", "\x89PNG"],
+    ["#save-scene", ".toml", ""],
+  ]) {
+    const [download] = await Promise.all([page.waitForEvent("download"), page.locator(button).click()]);
+    assert.equal(download.suggestedFilename(), `plate_and_cube${ending}`);
+    const bytes = fs.readFileSync(await download.path());
+    assert.ok(bytes.length > 100);
+    assert.ok(bytes.toString("latin1").startsWith(begin));
+  }
+});
+
+pageTest("makes a beam picture and shows it", {}, async ({ page }) => {
+  await page.locator("#beam-start").click();
+  await page.locator("#beam-show").click();
+  const picture = page.locator("#beam-picture");
+  await viewer.until("the beam picture", () => picture.evaluate((image) => image.complete && image.naturalWidth > 60));
+  await viewer.screenshot(page, "beam");
+  await page.getByRole("button", { name: "Close" }).click();
+  await picture.waitFor({ state: "hidden" });
+});
+
+pageTest("200 rapid inputs build no queue", {}, async ({ page, traffic }) => {
+  const [x, y] = await viewer.middleOf(page);
+  await page.mouse.move(x, y);
+  await page.mouse.down();
+  await page.mouse.move(x + 200, y + 20, { steps: 200 });
+  await page.mouse.up();
+  await viewer.until("cameras", () => sentOf(traffic, "camera").length > 0);
+  await viewer.shown(page, traffic);
+  const late = viewer.latePictures(traffic);
+  assert.ok(late <= 3, `${late} pictures came before the newest`);
+  assert.ok(sentOf(traffic, "camera").length <= 202);
+
+  // All within one frame of the browser: one message.
+  const sent = sentOf(traffic, "camera").length;
+  await page.evaluate(() => {
+    const press = () => document.body.dispatchEvent(new KeyboardEvent("keydown", { key: "ArrowLeft", bubbles: true }));
+    for (let i = 0; i < 200; ++i) press();
+  });
+  await viewer.until("a camera", () => sentOf(traffic, "camera").length > sent);
+  await viewer.shown(page, traffic);
+  assert.ok(sentOf(traffic, "camera").length - sent <= 2);
+});
+
+pageTest("can be used with the keyboard alone", {}, async ({ page, traffic }) => {
+  const focused = () => page.evaluate(() => document.activeElement.id);
+  await page.evaluate(() => document.activeElement.blur());
+  await page.keyboard.press("Tab");
+  assert.equal(await focused(), "picture");
+  const before = await viewer.pictureOf(page);
+  for (let i = 0; i < 6; ++i) await page.keyboard.press("ArrowRight");
+  await page.keyboard.press("+");
+  await viewer.until("cameras", () => sentOf(traffic, "camera").length > 0);
+  await viewer.shown(page, traffic);
+  assert.ok(viewer.difference(before, await viewer.pictureOf(page)) > 1.5);
+
+  for (let i = 0; (await focused()) !== "radius-slider"; ++i) {
+    assert.ok(i < 20, "the radius is out of reach of the tabulator");
+    await page.keyboard.press("Tab");
+  }
+  await page.keyboard.press("ArrowRight");
+  await viewer.until("a radius", () => typeof sentOf(traffic, "rounding").at(-1)?.radius === "number");
+  await page.keyboard.press("h");
+  await page.locator("#help").waitFor();
+  await viewer.screenshot(page, "help");
+  await page.keyboard.press("Escape");
+  await page.locator("#help").waitFor({ state: "hidden" });
+  await page.locator("#radius-auto").click();
+  await viewer.shown(page, traffic);
+});
+
+pageTest("every control has a name", {}, async ({ page }) => {
+  await page.evaluate(() => document.querySelectorAll("details").forEach((section) => (section.open = true)));
+  const unnamed = await page.evaluate(() =>
+    [...document.querySelectorAll("button, input, select, [role=slider], progress")]
+      .filter((element) => element.type !== "file" && element.checkVisibility())
+      .filter((element) => !element.labels?.length && !element.ariaLabel && !element.textContent.trim())
+      .map((element) => element.outerHTML),
+  );
+  assert.deepEqual(unnamed, []);
+});
+
+for (const [scheme, width, height] of [
+  ["light", 1280, 800],
+  ["dark", 1280, 800],
+  ["light", 1920, 1080],
+]) {
+  pageTest(`looks right in ${scheme} at ${width}`, { width, height, colorScheme: scheme }, async ({ page }) => {
+    await page.waitForFunction(() => document.documentElement.scrollWidth <= window.innerWidth);
+    assert.ok(await page.locator("#save-picture").isVisible());
+    await viewer.screenshot(page, `${scheme}-${width}`);
+  });
+}
+
+const phone = { width: 390, height: 844, deviceScaleFactor: 2, hasTouch: true, isMobile: true };
+pageTest("a phone shows all without overflow, and fingers turn the model", phone, async ({ page, context, traffic }) => {
+  const overflow = () =>
+    page.evaluate(() => ({
+      page: document.documentElement.scrollWidth - window.innerWidth,
+      panel: document.getElementById("panel").scrollWidth - document.getElementById("panel").clientWidth,
+    }));
+  assert.deepEqual(await overflow(), { page: 0, panel: 0 });
+  assert.ok(await page.locator("#radius-slider").isVisible());
+  await viewer.screenshot(page, "phone");
+  await page.locator("#sheet-button").tap();
+  await page.locator("#lighting").waitFor();
+  assert.deepEqual(await overflow(), { page: 0, panel: 0 });
+  await viewer.screenshot(page, "phone-settings");
+  await page.locator("#sheet-button").tap();
+
+  const touch = await context.newCDPSession(page);
+  const fingers = (type, ...points) =>
+    touch.send("Input.dispatchTouchEvent", { type, touchPoints: points.map(([x, y], id) => ({ x, y, id })) });
+  const before = await viewer.pictureOf(page);
+  await fingers("touchStart", [150, 400]);
+  for (let i = 1; i <= 6; ++i) await fingers("touchMove", [150 + 20 * i, 400]);
+  await fingers("touchEnd");
+  await viewer.until("cameras", () => sentOf(traffic, "camera").length > 0);
+  await viewer.shown(page, traffic);
+  const turned = await viewer.pictureOf(page);
+  assert.ok(viewer.difference(before, turned) > 1.5);
+
+  const sent = sentOf(traffic, "camera").length;
+  const distance = ({ position, target }) => Math.hypot(...position.map((x, at) => x - target[at]));
+  const far = distance(sentOf(traffic, "camera").at(-1));
+  await fingers("touchStart", [180, 400]);
+  await fingers("touchStart", [180, 400], [210, 400]);
+  for (let i = 1; i <= 6; ++i) await fingers("touchMove", [180 - 10 * i, 400], [210 + 10 * i, 400]);
+  await fingers("touchEnd");
+  await viewer.until("nearer cameras", () => sentOf(traffic, "camera").length > sent);
+  await viewer.shown(page, traffic);
+  assert.ok(distance(sentOf(traffic, "camera").at(-1)) < 0.7 * far);
+});
+
+/** Status of a request that a browser would not make. */
+function statusOf(path, headers = {}) {
+  return new Promise((resolve, reject) => {
+    const request = http.request({ host: "127.0.0.1", port: server.port, path, headers }, (answer) => {
+      answer.resume();
+      resolve(answer.statusCode);
+    });
+    request.on("upgrade", (answer, socket) => {
+      socket.destroy();
+      resolve(answer.statusCode);
+    });
+    request.on("error", reject);
+    request.end();
+  });
+}
+
+test("refuses wrong tokens, foreign origins and foreign hosts", async () => {
+  const upgrade = {
+    connection: "Upgrade",
+    upgrade: "websocket",
+    "sec-websocket-version": "13",
+    "sec-websocket-key": "dGhlIHNhbXBsZSBub25jZQ==",
+  };
+  const own = { ...upgrade, origin: `http://127.0.0.1:${server.port}` };
+  assert.equal(await statusOf(`/?t=${server.token}`), 200);
+  assert.equal(await statusOf("/"), 403);
+  assert.equal(await statusOf("/?t=wrong"), 403);
+  assert.equal(await statusOf("/picture.png?t=wrong"), 403);
+  assert.equal(await statusOf(`/?t=${server.token}`, { host: "example.org" }), 403);
+  assert.equal(await statusOf(`/ws?t=${server.token}`, own), 101);
+  assert.equal(await statusOf("/ws?t=wrong", own), 403);
+  assert.equal(await statusOf(`/ws?t=${server.token}`, { ...upgrade, origin: "http://example.org" }), 403);
+});
+
+pageTest("says so when models may not be dropped", {}, async ({ page }) => {
+  await drop(page, "frame.stl", plateStl);
+  await page.locator(".message.error", { hasText: "does not take models" }).waitFor();
+  await page.getByRole("button", { name: "Dismiss this message" }).click();
+  await page.locator(".message.error").waitFor({ state: "detached" });
+});
+
+async function drop(page, name, text) {
+  const files = await page.evaluateHandle(
+    ([name, text]) => {
+      const transfer = new DataTransfer();
+      transfer.items.add(new File([text], name));
+      return transfer;
+    },
+    [name, text],
+  );
+  await page.dispatchEvent("#picture", "drop", { dataTransfer: files });
+}
+
+test("a dropped file is opened where that is allowed", { timeout: 4 * viewer.PATIENCE_MS }, async () => {
+  const other = await viewer.startServer(model, ["--allow-upload"]);
+  const { page, context, traffic, errors } = await viewer.openPage(other.url);
+  try {
+    await viewer.firstFrame(page);
+    await drop(page, "frame.stl", plateStl);
+    await viewer.until("the new model", async () => (await page.locator("#model-name").textContent()) === "frame.stl");
+    await viewer.until("one object", () => scenes(traffic).at(-1).objects.length === 1);
+    await drop(page, "broken.stl", "solid nothing");
+    await page.locator(".message.error", { hasText: "broken.stl" }).waitFor();
+    assert.equal(await page.locator("#model-name").textContent(), "frame.stl");
+    assert.deepEqual(errors, []);
+  } finally {
+    await context.close();
+    await other.stop();
+  }
+});
+
+test("reconnects to a server that was started again", { timeout: 4 * viewer.PATIENCE_MS }, async () => {
+  let other = await viewer.startServer(model);
+  const { port, token } = other;
+  const { page, context, errors } = await viewer.openPage(other.url);
+  const status = () => page.locator("#status").textContent();
+  try {
+    await viewer.firstFrame(page);
+    await other.stop();
+    await viewer.until("no connection", async () => (await status()) === "no connection");
+    await page.locator(".message", { hasText: "does not answer" }).waitFor();
+    await viewer.screenshot(page, "no-connection");
+    other = await viewer.startServer(model, ["--port", port, "--token", token]);
+    await viewer.until("connected", async () => (await status()) === "connected");
+    await page.locator(".message", { hasText: "does not answer" }).waitFor({ state: "detached" });
+    const frame = await viewer.frameOf(page);
+    await page.keyboard.press("ArrowLeft");
+    await viewer.until("a new frame", async () => (await viewer.frameOf(page)) !== frame);
+
+    await other.stop();
+    other = await viewer.startServer(model, ["--port", port, "--token", `${token}x`]);
+    await page.locator(".message", { hasText: "refuses this address" }).waitFor();
+    assert.deepEqual(errors, []);
+  } finally {
+    await context.close();
+    await other.stop();
+  }
+});

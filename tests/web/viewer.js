@@ -1,0 +1,181 @@
+// viewer.js — what the tests need of `arris view`, the browser and the pictures.
+import assert from "node:assert/strict";
+import { spawn } from "node:child_process";
+import fs from "node:fs";
+import os from "node:os";
+import path from "node:path";
+import { setTimeout as sleep } from "node:timers/promises";
+import { fileURLToPath } from "node:url";
+import { chromium } from "playwright-core";
+
+const root = fileURLToPath(new URL("../..", import.meta.url));
+const program = process.env.ARRIS ?? path.join(root, "build/release/arris");
+const screenshots = process.env.ARRIS_SCREENSHOTS ?? path.join(root, "build/release/web-screenshots");
+const browserProgram = process.env.CHROMIUM ?? "/usr/bin/chromium";
+
+// Other work may share the machine: nothing here fails for being slow before this.
+export const PATIENCE_MS = 90_000;
+
+export const folder = fs.mkdtempSync(path.join(os.tmpdir(), "arris-web-"));
+process.on("exit", () => fs.rmSync(folder, { recursive: true, force: true }));
+
+export function writeModel(name, text) {
+  const file = path.join(folder, name);
+  fs.writeFileSync(file, text);
+  return file;
+}
+
+/** Waits until `check` returns something true, and returns it. */
+export async function until(what, check) {
+  const end = Date.now() + PATIENCE_MS;
+  for (;;) {
+    const value = await check();
+    if (value) return value;
+    assert.ok(Date.now() < end, `never happened: ${what}`);
+    await sleep(50);
+  }
+}
+
+/** Starts `arris view` and waits for its address. */
+export async function startServer(file, options = []) {
+  const child = spawn(program, ["view", file, "--no-open", ...options], { stdio: ["ignore", "pipe", "pipe"] });
+  let output = "";
+  let ended = null;
+  for (const stream of [child.stdout, child.stderr]) stream.on("data", (data) => (output += data));
+  const exit = new Promise((resolve) =>
+    child.once("close", (code, signal) => resolve((ended = { code, signal }))),
+  );
+  child.once("error", (error) => (ended = { error }));
+  process.once("exit", () => child.kill("SIGKILL"));
+  const url = await until("the server's address", () => {
+    assert.equal(ended, null, `arris view ended: ${output} ${ended?.error ?? ""}`);
+    return /http:\/\/\S+\?t=[\w-]+/.exec(output)?.[0];
+  });
+  return {
+    url,
+    port: new URL(url).port,
+    token: new URL(url).searchParams.get("t"),
+    output: () => output,
+    /** Asks it to end, as Ctrl-C does. */
+    async stop() {
+      child.kill("SIGINT");
+      return exit;
+    },
+  };
+}
+
+let browser = null;
+export async function launchBrowser() {
+  browser = await chromium.launch({
+    executablePath: browserProgram,
+    // Root needs the first, containers with a small /dev/shm the second.
+    args: ["--no-sandbox", "--disable-dev-shm-usage"],
+    timeout: PATIENCE_MS,
+  });
+}
+export async function closeBrowser() {
+  await browser?.close();
+}
+
+/** A page of its own in a window of this size, with the messages of its WebSocket. */
+export async function openPage(url, { width = 900, height = 600, ...options } = {}) {
+  const context = await browser.newContext({ viewport: { width, height }, acceptDownloads: true, ...options });
+  context.setDefaultTimeout(PATIENCE_MS);
+  const page = await context.newPage();
+  // `order`: the sequence numbers of messages sent and pictures received, as they went by.
+  const traffic = { sent: [], received: [], order: [] };
+  const errors = [];
+  page.on("pageerror", (error) => errors.push(String(error.stack)));
+  page.on("console", (message) => {
+    // Refused connections are part of some tests; scripts and styles that the policy blocks are not.
+    if (message.type() === "error" && !/Failed to load resource|WebSocket connection/.test(message.text())) {
+      errors.push(message.text());
+    }
+  });
+  page.on("websocket", (socket) => {
+    socket.on("framesent", ({ payload }) => {
+      const message = JSON.parse(payload);
+      traffic.sent.push(message);
+      if (message.seq) traffic.order.push({ sent: message.seq });
+    });
+    socket.on("framereceived", ({ payload }) => {
+      if (typeof payload === "string") traffic.received.push(JSON.parse(payload));
+      else traffic.order.push({ picture: payload.readUInt32LE(8) });
+    });
+  });
+  await page.goto(url);
+  return { page, context, traffic, errors };
+}
+
+export const frameOf = (page) => page.locator("#picture").evaluate((canvas) => Number(canvas.dataset.frame ?? 0));
+export const seqOf = (page) => page.locator("#picture").evaluate((canvas) => Number(canvas.dataset.seq ?? 0));
+
+export const firstFrame = (page) => until("a first frame", () => frameOf(page));
+
+/** The newest of the page's messages has been drawn. */
+export async function shown(page, traffic) {
+  const newest = () => Math.max(0, ...traffic.sent.map(({ seq }) => seq ?? 0));
+  return until("the newest input in the picture", async () => (await seqOf(page)) >= newest());
+}
+
+/** Pictures that came after the newest message had left, before one that shows it. */
+export function latePictures({ order }) {
+  const last = order.findLastIndex(({ sent }) => sent !== undefined);
+  return order.slice(last).filter(({ picture }) => picture < order[last].sent).length;
+}
+
+/** A view that gets no finer. */
+export const converged = (page) =>
+  until("a finished picture", () => page.locator("#picture").evaluate((canvas) => canvas.dataset.converged === "true"));
+
+const COLUMNS = 64;
+const ROWS = 48;
+
+/** The picture's brightness in 64 by 48 cells. */
+export function pictureOf(page) {
+  return page.locator("#picture").evaluate(
+    (canvas, [columns, rows]) => {
+      const small = new OffscreenCanvas(columns, rows).getContext("2d");
+      small.imageSmoothingQuality = "high";
+      small.drawImage(canvas, 0, 0, columns, rows);
+      const { data } = small.getImageData(0, 0, columns, rows);
+      return Array.from({ length: columns * rows }, (_, at) => (data[4 * at] + data[4 * at + 1] + data[4 * at + 2]) / 3);
+    },
+    [COLUMNS, ROWS],
+  );
+}
+
+/** Mean difference of two pictures, between two columns as parts of the width. */
+export function difference(a, b, from = 0, to = 1) {
+  let sum = 0;
+  let count = 0;
+  for (let at = 0; at < a.length; ++at) {
+    const column = (at % COLUMNS) / COLUMNS;
+    if (column < from || column >= to) continue;
+    sum += Math.abs(a[at] - b[at]);
+    count += 1;
+  }
+  return sum / count;
+}
+
+export function deviation(picture) {
+  const mean = picture.reduce((sum, x) => sum + x, 0) / picture.length;
+  return Math.sqrt(picture.reduce((sum, x) => sum + (x - mean) ** 2, 0) / picture.length);
+}
+
+export async function middleOf(page, selector = "#picture") {
+  const box = await page.locator(selector).boundingBox();
+  return [box.x + box.width / 2, box.y + box.height / 2];
+}
+
+export async function drag(page, [x, y], [right, down], { button = "left", steps = 8 } = {}) {
+  await page.mouse.move(x, y);
+  await page.mouse.down({ button });
+  await page.mouse.move(x + right, y + down, { steps });
+  await page.mouse.up({ button });
+}
+
+export async function screenshot(page, name) {
+  fs.mkdirSync(screenshots, { recursive: true });
+  await page.screenshot({ path: path.join(screenshots, `${name}.png`) });
+}
