@@ -42,7 +42,8 @@ export class Compare {
     this.#handle.style.left = `${left - stage.left + split * width}px`;
     this.#handle.setAttribute("aria-valuenow", String(Math.round(split * 100)));
     const own = NAMES[this.#session.scene.rounding.method];
-    this.#handle.setAttribute("aria-valuetext", `${own} left, ${NAMES[method]} right of ${Math.round(split * 100)} percent`);
+    const where = `${Math.round(split * 100)} percent`;
+    this.#handle.setAttribute("aria-valuetext", `${own} left, ${NAMES[method]} right of ${where}`);
     document.getElementById("split-left").textContent = own;
     document.getElementById("split-right").textContent = NAMES[method];
   }

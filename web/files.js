@@ -2,6 +2,13 @@
 
 const byId = (id) => document.getElementById(id);
 
+/** What the server says of a request that it did not fulfil; the cause is what to do. */
+async function problemOf(answer) {
+  const text = (await answer.text()).trim() || `the server answered ${answer.status}`;
+  const end = text.indexOf("; ");
+  return end < 0 ? new Error(text) : new Error(text.slice(0, end), { cause: text.slice(end + 2) });
+}
+
 export class Files {
   #session;
   #connection;
@@ -34,7 +41,7 @@ export class Files {
   async #save(path, extension, what) {
     try {
       const answer = await fetch(this.#connection.url(path), { cache: "no-store" });
-      if (!answer.ok) throw new Error((await answer.text()).trim() || `the server answered ${answer.status}`);
+      if (!answer.ok) throw await problemOf(answer);
       const link = document.createElement("a");
       link.href = URL.createObjectURL(await answer.blob());
       const stem = (this.#session.scene?.name ?? "arris").replace(/\.[^.]*$/, "").replace(/[^\w.-]+/g, "_");
@@ -43,7 +50,8 @@ export class Files {
       setTimeout(() => URL.revokeObjectURL(link.href), 10000);
       this.#messages.info(`Saved the ${what} as ${link.download}`);
     } catch (error) {
-      this.#messages.error(`The ${what} could not be saved: ${error.message}`, "Try again when the server answers.");
+      const remedy = error.cause ?? "Try again when the server answers.";
+      this.#messages.error(`The ${what} could not be saved: ${error.message}`, remedy);
     }
   }
 
@@ -64,9 +72,10 @@ export class Files {
     try {
       const url = `${this.#connection.url("/model")}&name=${encodeURIComponent(file.name)}`;
       const answer = await fetch(url, { method: "POST", body: file });
-      if (!answer.ok) throw new Error((await answer.text()).trim() || `the server answered ${answer.status}`);
+      if (!answer.ok) throw await problemOf(answer);
     } catch (error) {
-      this.#messages.error(`${file.name} was not opened: ${error.message}`, "The model shown before stays.");
+      const remedy = error.cause ?? "The model shown before stays.";
+      this.#messages.error(`${file.name} was not opened: ${error.message}`, remedy);
     } finally {
       opening.remove();
     }
@@ -113,7 +122,7 @@ export class Files {
       look.hidden = !detail.ready;
       start.disabled = !detail.ready && !detail.error;
       if (detail.error) this.#messages.error(`No beam picture: ${detail.error}`, detail.remedy);
-      if (detail.ready) this.#messages.info("The beam picture is done", "Look at it in the panel, under “Picture and file”.");
+      if (detail.ready) this.#messages.info("The beam picture is done", "Open it under “Picture and file”.");
     });
     this.#connection.addEventListener("status", () => (start.disabled = false));
     look.addEventListener("click", () => this.#showBeam());

@@ -24,7 +24,8 @@ export class Objects extends EventTarget {
     byId("object-isolate").addEventListener("click", () => this.isolate());
     byId("object-back").addEventListener("click", () => this.putBack());
     byId("object-radius").addEventListener("change", ({ target }) => {
-      if (target.checkValidity()) this.#edit(this.#chosen, { radius: target.value === "" ? null : Number(target.value) });
+      if (!target.checkValidity()) return;
+      this.#edit(this.#chosen, { radius: target.value === "" ? null : Number(target.value) });
     });
     byId("object-radius-clear").addEventListener("click", () => this.#edit(this.#chosen, { radius: null }));
   }
@@ -153,7 +154,8 @@ export class Objects extends EventTarget {
     if (object.rounded > 0) facts.push(`rounded by ${formatNumber(object.rounded, 3)}`);
     byId("object-facts").textContent = facts.join(", ");
     const radius = byId("object-radius");
-    if (document.activeElement !== radius) radius.value = typeof object.radius === "number" ? formatNumber(object.radius) : "";
+    const own = typeof object.radius === "number" ? formatNumber(object.radius) : "";
+    if (document.activeElement !== radius) radius.value = own;
     radius.placeholder = typeof object.radius === "string" ? object.radius : "as all";
     byId("object-isolate").setAttribute("aria-pressed", String(this.#isolated === object.id));
   }

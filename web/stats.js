@@ -17,11 +17,13 @@ export class Stats {
 
   /** A frame has been drawn; latency from input to picture in milliseconds, or null. */
   setFrame(header, latency) {
-    set("stat-samples", header.moving ? "moving" : header.converged ? `${count(header.samples)} ✓` : count(header.samples));
+    const samples = count(header.samples) + (header.converged ? " ✓" : "");
+    set("stat-samples", header.moving ? "moving" : samples);
     if (latency === null) return;
     // Single frames jump about more than can be read.
     this.#latency = this.#latency === null ? latency : 0.7 * this.#latency + 0.3 * latency;
-    set("stat-latency", `${Math.round(this.#latency)} ms`, `from input to picture; ${Math.round(header.serverMs)} ms in the server`);
+    const inServer = `${Math.round(header.serverMs)} ms in the server`;
+    set("stat-latency", `${Math.round(this.#latency)} ms`, `from input to picture; ${inServer}`);
   }
 
   setState(state) {

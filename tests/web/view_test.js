@@ -297,7 +297,8 @@ for (const [scheme, width, height] of [
 }
 
 const phone = { width: 390, height: 844, deviceScaleFactor: 2, hasTouch: true, isMobile: true };
-pageTest("a phone shows all without overflow, and fingers turn the model", phone, async ({ page, context, traffic }) => {
+pageTest("a phone shows all without overflow, and fingers turn the model", phone, async (opened) => {
+  const { page, context, traffic } = opened;
   const overflow = () =>
     page.evaluate(() => ({
       page: document.documentElement.scrollWidth - window.innerWidth,

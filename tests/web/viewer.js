@@ -139,7 +139,8 @@ export function pictureOf(page) {
       small.imageSmoothingQuality = "high";
       small.drawImage(canvas, 0, 0, columns, rows);
       const { data } = small.getImageData(0, 0, columns, rows);
-      return Array.from({ length: columns * rows }, (_, at) => (data[4 * at] + data[4 * at + 1] + data[4 * at + 2]) / 3);
+      const brightness = (at) => (data[at] + data[at + 1] + data[at + 2]) / 3;
+      return Array.from({ length: columns * rows }, (_, at) => brightness(4 * at));
     },
     [COLUMNS, ROWS],
   );
