@@ -50,13 +50,13 @@ export class Input {
       canvas.addEventListener(end, (event) => this.#release(event));
     }
     canvas.addEventListener("wheel", (event) => this.#wheel(event), { passive: false });
+    // The browser's own middle button scrolls.
+    canvas.addEventListener("mousedown", (event) => event.button === 1 && event.preventDefault());
     canvas.addEventListener("contextmenu", (event) => event.preventDefault());
     canvas.addEventListener("dblclick", (event) => actions.centre(event.clientX, event.clientY));
   }
 
   #press(event) {
-    // The browser's own middle button scrolls.
-    if (event.button === 1) event.preventDefault();
     this.canvas.focus({ preventScroll: true });
     this.canvas.setPointerCapture(event.pointerId);
     this.#pointers.set(event.pointerId, [event.clientX, event.clientY]);

@@ -133,7 +133,10 @@ export class Objects extends EventTarget {
 
   #fillRow(row, { id, name, visible }) {
     const isChosen = id === this.#chosen;
-    row.dataset.id = id;
+    // Most scenes change nothing here.
+    const state = `${id} ${isChosen} ${visible} ${name}`;
+    if (row.dataset.state === state) return;
+    Object.assign(row.dataset, { id, state });
     row.className = `${isChosen ? "chosen" : ""} ${visible ? "" : "gone"}`;
     const [choose, eye] = row.children;
     choose.textContent = name;

@@ -391,7 +391,7 @@ async function drop(page, name, text) {
 }
 
 test("a dropped file is opened where that is allowed", { timeout: 4 * viewer.PATIENCE_MS }, async () => {
-  const other = await viewer.startServer(model, ["--allow-upload"]);
+  const other = await viewer.startServer(model, ["--port", "0", "--allow-upload"]);
   const { page, context, traffic, errors } = await viewer.openPage(other.url);
   try {
     await viewer.firstFrame(page);
@@ -419,7 +419,7 @@ test("reconnects to a server that was started again", { timeout: 4 * viewer.PATI
     await viewer.until("no connection", async () => (await status()) === "no connection");
     await page.locator(".message", { hasText: "does not answer" }).waitFor();
     await viewer.screenshot(page, "no-connection");
-    other = await viewer.startServer(model, ["--port", port, "--token", token]);
+    other = await viewer.startServer(model, ["--port", port], token);
     await viewer.until("connected", async () => (await status()) === "connected");
     await page.locator(".message", { hasText: "does not answer" }).waitFor({ state: "detached" });
     const frame = await viewer.frameOf(page);
@@ -427,7 +427,7 @@ test("reconnects to a server that was started again", { timeout: 4 * viewer.PATI
     await viewer.until("a new frame", async () => (await viewer.frameOf(page)) !== frame);
 
     await other.stop();
-    other = await viewer.startServer(model, ["--port", port, "--token", `${token}x`]);
+    other = await viewer.startServer(model, ["--port", port]);
     await page.locator(".message", { hasText: "refuses this address" }).waitFor();
     assert.deepEqual(errors, []);
   } finally {

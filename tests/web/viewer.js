@@ -37,8 +37,9 @@ export async function until(what, check) {
 }
 
 /** Starts `arris view` and waits for its address. */
-export async function startServer(file, options = []) {
-  const child = spawn(program, ["view", file, "--no-open", ...options], { stdio: ["ignore", "pipe", "pipe"] });
+export async function startServer(file, options = ["--port", "0"], token = "") {
+  const env = { ...process.env, ...(token ? { ARRIS_VIEW_TOKEN: token } : {}) };
+  const child = spawn(program, ["view", file, "--no-browser", ...options], { stdio: ["ignore", "pipe", "pipe"], env });
   let output = "";
   let ended = null;
   for (const stream of [child.stdout, child.stderr]) stream.on("data", (data) => (output += data));

@@ -1,0 +1,149 @@
+// page_test.js — the page's rules that need no browser: gestures, keys, numbers, sizes, frame headers.
+import assert from "node:assert/strict";
+import test from "node:test";
+import { parseHeader, retryDelay } from "../../web/connection.js";
+import { clickAction, dragAction } from "../../web/input.js";
+import { keyName } from "../../web/keys.js";
+import { formatNumber, logScale, parseRadius, radiusScale, usedRadius } from "../../web/panels.js";
+import { fitInto, pictureSize } from "../../web/picture.js";
+
+const press = (button, keys = {}) => ({ button, ...keys });
+
+test("drags do what they do in F3D", () => {
+  const drag = (...given) => dragAction("f3d", press(...given));
+  assert.equal(drag(0), "orbit");
+  assert.equal(drag(0, { shiftKey: true }), "pan");
+  assert.equal(drag(0, { ctrlKey: true }), "roll");
+  assert.equal(drag(0, { altKey: true }), "move");
+  assert.equal(drag(1), "pan");
+  assert.equal(drag(2), "zoom");
+  assert.equal(drag(2, { ctrlKey: true }), "zoomThere");
+  assert.equal(drag(2, { shiftKey: true }), "light");
+  assert.equal(drag(4), null);
+});
+
+test("drags do what they do in Blender", () => {
+  const drag = (...given) => dragAction("blender", press(...given));
+  assert.equal(drag(1), "orbit");
+  assert.equal(drag(1, { shiftKey: true }), "pan");
+  assert.equal(drag(1, { ctrlKey: true }), "zoom");
+  assert.equal(drag(0), null);
+  assert.equal(drag(0, { altKey: true }), "orbit");
+});
+
+test("the left button moves objects while Move is on, and the view still pans and rolls", () => {
+  assert.equal(dragAction("f3d", press(0), true), "move");
+  assert.equal(dragAction("f3d", press(0, { shiftKey: true }), true), "pan");
+  assert.equal(dragAction("f3d", press(2), true), "zoom");
+  assert.equal(dragAction("blender", press(0), true), "move");
+  assert.equal(dragAction("blender", press(1), true), "orbit");
+});
+
+test("clicks choose, and centre with F3D's middle button", () => {
+  assert.equal(clickAction("f3d", press(0)), "select");
+  assert.equal(clickAction("f3d", press(1)), "centre");
+  assert.equal(clickAction("blender", press(1)), null);
+  assert.equal(clickAction("f3d", press(2)), null);
+});
+
+test("names keys independently of capitals", () => {
+  assert.equal(keyName({ key: "e" }), "E");
+  assert.equal(keyName({ key: "E" }), "E");
+  assert.equal(keyName({ key: "L", shiftKey: true }), "Shift+L");
+  assert.equal(keyName({ key: "+", shiftKey: true }), "+");
+  assert.equal(keyName({ key: "ArrowUp", shiftKey: true }), "Shift+ArrowUp");
+  assert.equal(keyName({ key: "s", ctrlKey: true }), "Ctrl+S");
+  assert.equal(keyName({ key: "s", metaKey: true }), "Ctrl+S");
+});
+
+test("reads radii as people type them", () => {
+  assert.equal(parseRadius("0.5"), 0.5);
+  assert.equal(parseRadius(" 0,5 "), 0.5);
+  assert.equal(parseRadius(".5"), 0.5);
+  assert.equal(parseRadius("1e-3"), 0.001);
+  assert.equal(parseRadius("8%"), "8%");
+  assert.equal(parseRadius("8 %"), "8%");
+  assert.equal(parseRadius("Auto"), "auto");
+  for (const wrong of ["", "-1", "x", "1 mm", "%", "1e999", "NaN", "Infinity"]) {
+    assert.equal(parseRadius(wrong), undefined, wrong);
+  }
+});
+
+test("the radius that is shown is that of the most rounded object without one of its own", () => {
+  const objects = [
+    { radius: null, rounded: 0.5 },
+    { radius: null, rounded: 0.6 },
+    { radius: 2, rounded: 2 },
+  ];
+  assert.equal(usedRadius("auto", objects), 0.6);
+  assert.equal(usedRadius("8%", objects), 0.6);
+  assert.equal(usedRadius(0.1, objects), 0.1);
+  assert.equal(usedRadius("auto", []), null);
+});
+
+test("a logarithmic slider reaches its ends and comes back to its values", () => {
+  const { toSlider, fromSlider } = logScale(0.05, 20);
+  assert.equal(fromSlider(0), 0.05);
+  assert.equal(fromSlider(1000), 20);
+  assert.equal(toSlider(1), 500);
+  assert.equal(fromSlider(500), 1);
+  assert.equal(toSlider(0), 0);
+  assert.equal(toSlider(1e9), 1000);
+  for (let at = 0; at <= 1000; at += 50) assert.ok(Math.abs(toSlider(fromSlider(at)) - at) <= 1);
+});
+
+test("the radius slider's range goes with the model's size", () => {
+  const small = radiusScale({ lower: [0, 0, 0], upper: [1, 1, 1] });
+  const large = radiusScale({ lower: [0, 0, 0], upper: [1000, 1000, 1000] });
+  assert.ok(Math.abs(large.fromSlider(700) / small.fromSlider(700) - 1000) < 10);
+  // A model without extent must not make numbers that are none.
+  assert.ok(Number.isFinite(radiusScale({ lower: [0, 0, 0], upper: [0, 0, 0] }).fromSlider(3)));
+});
+
+test("writes numbers with as few digits as they need", () => {
+  assert.equal(formatNumber(0.1 + 0.2), "0.3");
+  assert.equal(formatNumber(1234.5678), "1235");
+  assert.equal(formatNumber(0.62446752, 3), "0.624");
+});
+
+test("asks for pictures of the window's shape, within the protocol's bounds and its own", () => {
+  assert.deepEqual(pictureSize(1280, 720, 1), [1280, 720]);
+  for (const [width, height, ratio] of [[1920, 1080, 2], [3840, 2160, 1], [390, 744, 3], [5000, 400, 1], [10, 10, 1]]) {
+    for (const detail of ["auto", 1, 0.5]) {
+      const size = pictureSize(width, height, ratio, detail);
+      assert.ok(size[0] >= 64 && size[0] <= 3840 && size[1] >= 64 && size[1] <= 2160, String(size));
+      if (detail === "auto") assert.ok(size[0] * size[1] <= 1920 * 1080 * 1.01, String(size));
+      if (width > 64) assert.ok(Math.abs(size[0] / size[1] / (width / height) - 1) < 0.02, String(size));
+    }
+  }
+});
+
+test("fits a picture into an area whole and in the middle", () => {
+  assert.deepEqual(fitInto(100, 100, 200, 100), { left: 0, top: 25, width: 100, height: 50 });
+  assert.deepEqual(fitInto(100, 50, 10, 10), { left: 25, top: 0, width: 50, height: 50 });
+});
+
+test("reads the header of a frame, and nothing from other bytes", () => {
+  const bytes = new DataView(new ArrayBuffer(40));
+  bytes.setUint32(0, 0x46525241, true);
+  bytes.setUint32(4, 7, true);
+  bytes.setUint32(8, 41, true);
+  bytes.setUint16(12, 1280, true);
+  bytes.setUint16(14, 720, true);
+  bytes.setFloat32(16, 12.5, true);
+  bytes.setUint32(20, 2, true);
+  bytes.setUint32(24, 64, true);
+  assert.deepEqual(parseHeader(bytes.buffer), {
+    frame: 7, seq: 41, width: 1280, height: 720, serverMs: 12.5, moving: false, converged: true, samples: 64,
+  });
+  assert.equal(parseHeader(bytes.buffer.slice(0, 32)), null);
+  bytes.setUint8(0, 0);
+  assert.equal(parseHeader(bytes.buffer), null);
+});
+
+test("tries to reconnect with growing delays, to a limit", () => {
+  const delays = [...Array(20).keys()].map(retryDelay);
+  assert.ok(delays[0] <= 1000);
+  for (let i = 1; i < delays.length; ++i) assert.ok(delays[i] >= delays[i - 1]);
+  assert.equal(delays.at(-1), 15000);
+});
