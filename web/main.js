@@ -76,7 +76,8 @@ function resize() {
 new ResizeObserver(resize).observe(stage);
 
 function drawMarks() {
-  drawBox(byId("marks"), picture, view.shown, objects.chosen);
+  const { chosen } = objects;
+  drawBox(byId("marks"), picture, view.shown, chosen?.visible ? chosen : null);
 }
 
 picture.addEventListener("drawn", ({ detail: header }) => {
@@ -152,8 +153,8 @@ function setPreset(preset) {
 }
 
 function centreOn(x, y) {
-  move.pick(x, y, ({ id, position }) => {
-    if (id !== null) view.change((camera) => camera.centreOn(position));
+  move.pick(x, y, ({ position }) => {
+    if (position) view.change((camera) => camera.centreOn(position));
   });
 }
 

@@ -42,6 +42,7 @@ export class Messages {
     const item = document.createElement("div");
     item.className = `message ${kind}`;
     item.dataset.text = text;
+    if (kind === "error") item.setAttribute("role", "alert");
     const body = document.createElement("div");
     const what = document.createElement("strong");
     what.textContent = text;

@@ -142,6 +142,16 @@ pageTest("click chooses an object, and dragging with Alt moves it", {}, async ({
   await page.locator("#object-details").waitFor();
   await viewer.screenshot(page, "chosen");
 
+  const cameras = sentOf(traffic, "camera").length;
+  await page.mouse.dblclick(...cube);
+  await viewer.until("another centre", () => sentOf(traffic, "camera").length > cameras);
+  const { target } = sentOf(traffic, "camera").at(-1);
+  assert.ok(Math.hypot(target[0] + 6.75, target[1] + 6.75, target[2] - 8) < 0.5, `centre ${target}`);
+  const frames = sentOf(traffic, "frame_view").length;
+  await page.keyboard.press("7");
+  await viewer.until("the view from above again", () => sentOf(traffic, "frame_view").length > frames);
+  await viewer.shown(page, traffic);
+
   const before = await viewer.pictureOf(page);
   await page.keyboard.down("Alt");
   await page.mouse.move(...cube);
