@@ -36,10 +36,13 @@ export async function until(what, check) {
   }
 }
 
+// Enough to tell pictures apart, and soon there on a busy machine.
+const CHEAP = ["--shader", "direct", "--spp", "8"];
+
 /** Starts `arris view` and waits for its address. */
-export async function startServer(file, options = ["--port", "0"], token = "") {
-  const env = { ...process.env, ...(token ? { ARRIS_VIEW_TOKEN: token } : {}) };
-  const child = spawn(program, ["view", file, "--no-browser", ...options], { stdio: ["ignore", "pipe", "pipe"], env });
+export async function startServer(file, { port = "0", options = [] } = {}) {
+  const all = ["view", file, "--no-browser", "--port", String(port), ...CHEAP, ...options];
+  const child = spawn(program, all, { stdio: ["ignore", "pipe", "pipe"] });
   let output = "";
   let ended = null;
   for (const stream of [child.stdout, child.stderr]) stream.on("data", (data) => (output += data));
@@ -79,7 +82,7 @@ export async function closeBrowser() {
 }
 
 /** A page of its own in a window of this size, with the messages of its WebSocket. */
-export async function openPage(url, { width = 900, height = 600, ...options } = {}) {
+export async function openPage(url, { width = 760, height = 460, ...options } = {}) {
   const context = await browser.newContext({ viewport: { width, height }, acceptDownloads: true, ...options });
   context.setDefaultTimeout(PATIENCE_MS);
   const page = await context.newPage();
@@ -111,7 +114,14 @@ export async function openPage(url, { width = 900, height = 600, ...options } = 
 export const frameOf = (page) => page.locator("#picture").evaluate((canvas) => Number(canvas.dataset.frame ?? 0));
 export const seqOf = (page) => page.locator("#picture").evaluate((canvas) => Number(canvas.dataset.seq ?? 0));
 
-export const firstFrame = (page) => until("a first frame", () => frameOf(page));
+/** A picture in the shape of the window. */
+export const firstFrame = (page) =>
+  until("a first frame", () =>
+    page.locator("#picture").evaluate(({ dataset, width, height, clientWidth, clientHeight }) => {
+      const shape = (width * clientHeight) / (height * clientWidth);
+      return Number(dataset.frame) > 0 && Math.abs(shape - 1) < 0.02;
+    }),
+  );
 
 /** The newest of the page's messages has been drawn. */
 export async function shown(page, traffic) {
@@ -125,9 +135,16 @@ export function latePictures({ order }) {
   return order.slice(last).filter(({ picture }) => picture < order[last].sent).length;
 }
 
-/** A view that gets no finer. */
-export const converged = (page) =>
-  until("a finished picture", () => page.locator("#picture").evaluate((canvas) => canvas.dataset.converged === "true"));
+/** The newest input is in the picture, and what was coarse at first has gone: a dozen frames later, or finished. */
+export async function settled(page, traffic) {
+  await shown(page, traffic);
+  const first = await frameOf(page);
+  await until("a settled picture", () =>
+    page
+      .locator("#picture")
+      .evaluate(({ dataset }, enough) => Number(dataset.frame) >= enough || dataset.converged === "true", first + 12),
+  );
+}
 
 const COLUMNS = 64;
 const ROWS = 48;
