@@ -28,7 +28,10 @@ const connection = new Connection(token, () => ({ size: wantedSize() }));
 const session = new Session(connection);
 const picture = new Picture(canvas, (frame) => connection.acknowledge(frame));
 const stats = new Stats();
-const view = new View(session);
+const view = new View(session, () => {
+  const [width, height] = wantedSize();
+  return width / height;
+});
 const panels = new Panels(session);
 const compare = new Compare(session, picture);
 const objects = new Objects(session, (object) => view.lookAt(object, picture.aspect));

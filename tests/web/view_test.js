@@ -110,14 +110,19 @@ pageTest("a split view differs left and right of its line", {}, async ({ page, t
 
 pageTest("click chooses an object, and dragging with Alt moves it", {}, async ({ page, traffic }) => {
   await page.keyboard.press("7");
-  await viewer.until("the view from above", () => sentOf(traffic, "frame_view").length > 0);
+  const isTop = ({ type, direction }) => type === "frame_view" && direction === "top";
+  await viewer.until("the view from above", () => traffic.sent.some(isTop));
   await viewer.shown(page, traffic);
   const { left, top, height } = await page.locator("#picture").evaluate((canvas) => {
     const area = canvas.getBoundingClientRect();
     return { left: area.left + area.width / 2, top: area.top + area.height / 2, height: area.height };
   });
   // The cube stands at the plate's lower left corner.
-  const camera = await viewer.until("the camera", () => scenes(traffic).at(-1)?.camera);
+  const isAbove = ({ position, target }) => Math.hypot(position[0] - target[0], position[1] - target[1]) < 1e-6;
+  const camera = await viewer.until("the camera above", () => {
+    const newest = scenes(traffic).at(-1).camera;
+    return isAbove(newest) && newest;
+  });
   const depth = camera.position[2] - 8;
   const perUnit = height / (2 * depth * Math.tan((camera.fov * Math.PI) / 360));
   const cube = [left - 6.75 * perUnit, top + 6.75 * perUnit];
@@ -131,8 +136,9 @@ pageTest("click chooses an object, and dragging with Alt moves it", {}, async ({
   await viewer.until("another centre", () => sentOf(traffic, "camera").length > cameras);
   const { target } = sentOf(traffic, "camera").at(-1);
   assert.ok(Math.hypot(target[0] + 6.75, target[1] + 6.75, target[2] - 8) < 0.5, `centre ${target}`);
+  const framed = sentOf(traffic, "frame_view").length;
   await page.keyboard.press("7");
-  await viewer.until("the view from above again", () => sentOf(traffic, "frame_view").length > 1);
+  await viewer.until("the view from above again", () => sentOf(traffic, "frame_view").length > framed);
   await viewer.shown(page, traffic);
 
   const before = await viewer.pictureOf(page);
@@ -275,7 +281,9 @@ for (const [scheme, width, height] of [
   ["dark", 1280, 800],
   ["light", 1920, 1080],
 ]) {
-  pageTest(`looks right in ${scheme} at ${width}`, { width, height, colorScheme: scheme }, async ({ page }) => {
+  const options = { width, height, colorScheme: scheme };
+  pageTest(`looks right in ${scheme} at ${width}`, options, async ({ page, traffic }) => {
+    await viewer.settled(page, traffic);
     await page.waitForFunction(() => document.documentElement.scrollWidth <= window.innerWidth);
     assert.ok(await page.locator("#save-picture").isVisible());
     await viewer.screenshot(page, `${scheme}-${width}`);
@@ -292,6 +300,8 @@ pageTest("a phone shows all without overflow, and fingers turn the model", phone
     }));
   assert.deepEqual(await overflow(), { page: 0, panel: 0 });
   assert.ok(await page.locator("#radius-slider").isVisible());
+  await viewer.until("the model fitted into the narrow picture", () => sentOf(traffic, "frame_view").length > 0);
+  await viewer.settled(page, traffic);
   await viewer.screenshot(page, "phone");
   await page.locator("#sheet-button").tap();
   await page.locator("#lighting").waitFor();
