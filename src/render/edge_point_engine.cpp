@@ -212,6 +212,7 @@ class EdgePointEngine::Impl {
     FrameSettings frame{.frame = frame_,
                         .complex_filter = settings_.complex_filter,
                         .threads = settings_.threads,
+                        .find_tints = {},
                         .edges_are_missing = !settings_.use_edges,
                         .points_may_be_stale = frame_ - changed_ < kFramesOfStale};
     if (settings_.sharp_textures) {

@@ -38,7 +38,7 @@ Rgba mean_of(const Texture& texture) {
 
 TEST(TextureLevels, halves_keep_the_mean_whatever_their_size) {
   for (const bool srgb : {false, true}) {
-    for (const auto [width, height] : {std::pair{64, 32}, {37, 51}, {1, 9}, {3, 1}}) {
+    for (const auto& [width, height] : {std::pair{64, 32}, {37, 51}, {1, 9}, {3, 1}}) {
       const Texture texture = make_noise(width, height, srgb);
       const Texture half = halve_texture(texture, 0);
       EXPECT_EQ(half.width_px, std::max(1, width / 2));
