@@ -38,7 +38,8 @@ class BandMaker {
         looks_(weight_stride()),
         lacking_(std::size_t(kPrimaryRows) * lacking_stride()),
         painted_samples_(settings.tints != nullptr ? kSampleRows : 0, width_),
-        painted_(settings.tints != nullptr ? 1 : 0, width_) {}
+        painted_(settings.tints != nullptr ? 1 : 0, width_),
+        complex_(image) {}
 
   BandReport run() {
     const int first = std::max(band_.first - 1, 0),
@@ -130,14 +131,9 @@ class BandMaker {
       }
     });
     report_.times.antialias += lap();
-    for_crossed(y, [&](int x) {
-      if (settings_.complex_filter && image_.codes[image_.offset(x, y)].is_complex()) {
-        const Rgb fallback{here.color.r[x], here.color.g[x], here.color.b[x]};
-        set_pixel(out + 3 * x, reconstruct_complex_pixel(
-                                   image_, x, y,
-                                   {samples_, rows, settings_.tints, &painted_samples_, fallback}));
-      }
-    });
+    if (settings_.complex_filter) {
+      complex_.reconstruct_row(y, {samples_, rows, settings_.tints, &painted_samples_}, out);
+    }
     report_.times.complex += lap();
     set_wanted(y, here.weight);
   }
@@ -202,6 +198,7 @@ class BandMaker {
   std::vector<PointLook> looks_;
   std::vector<std::uint64_t> lacking_;
   ColorRows painted_samples_, painted_;
+  ComplexPixels complex_;
   std::vector<float> painted_weights_ = std::vector<float>(weight_stride());
   std::vector<std::uint64_t> painted_lacking_ = std::vector<std::uint64_t>(lacking_stride());
   BandReport report_;

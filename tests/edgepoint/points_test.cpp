@@ -496,6 +496,8 @@ TEST(ComplexPixel, mixes_the_colours_around_it) {
       row.b[x] = 0.25F;
     }
   }
+  // What stands in for the wire.
+  for (int y = 0; y < kHeight; ++y) colors.row(y).r[40] = colors.row(y).g[40] = 0.5F;
   // What is interpolated around it: the sides' own colours, or nothing.
   const std::vector<float> known(kWidth, 1.0F), unknown(kWidth, 0.0F);
   for (int y = 5; y < 40; ++y) {
@@ -504,8 +506,10 @@ TEST(ComplexPixel, mixes_the_colours_around_it) {
     const PrimaryNeighborhood around{{colors.row(y - 1), weights.data()},
                                      {colors.row(y), weights.data()},
                                      {colors.row(y + 1), weights.data()}};
-    const Rgb c = reconstruct_complex_pixel(
-        image, 40, y, {colors, around, nullptr, nullptr, {0.5F, 0.5F, 0.25F}});
+    ComplexPixels pixels(image);
+    std::vector<float> out(3 * std::size_t(kWidth));
+    pixels.reconstruct_row(y, {colors, around}, out.data());
+    const Rgb c{out[120], out[121], out[122]};
     EXPECT_NEAR(c.x + c.y, 1, 1e-5);
     EXPECT_NEAR(c.z, 0.25F, 1e-6);
     // 0.3 of the left, 0.4 of the right, and the wire between, of which nothing is known.
@@ -526,10 +530,14 @@ TEST(ComplexPixel, takes_what_its_neighbours_are_known_to_be) {
     const ColorRow row = colors.row(y);
     for (int x = 0; x < kWidth; ++x) row.r[x] = x < 40 ? 1 : 0.5F;
   }
+  // What stands in.
+  colors.row(0).r[40] = 0;
+  colors.row(0).b[40] = 1;
   ASSERT_TRUE(image.codes[image.offset(40, 11)].is_complex());
   const PrimaryRows rows{colors.row(0), known.data()};
-  const ComplexPixelColors of{colors, {rows, rows, rows}, nullptr, nullptr, {0, 0, 1}};
-  const Rgb c = reconstruct_complex_pixel(image, 40, 11, of);
+  std::vector<float> out(3 * std::size_t(kWidth));
+  ComplexPixels(image).reconstruct_row(11, {colors, {rows, rows, rows}}, out.data());
+  const Rgb c{out[120], out[121], out[122]};
   // 0.2 of the left, 0.3 of the right; of the wire between nothing is known.
   EXPECT_NEAR(c.x, 0.2F + 0.3F * 0.5F, 0.07F);
   EXPECT_NEAR(c.z, 0.5F, 0.07F);
