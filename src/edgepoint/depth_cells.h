@@ -8,11 +8,14 @@
 //            the 2 × 2 cells around a place; the offset knows the slope.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <vector>
 
+#include "arris/math.h"
 #include "edgepoint/edge_point_image.h"
 
 namespace arris {
@@ -31,6 +34,19 @@ class DepthCells {
 
   // The largest depth at which an edge is seen at a place of the picture.
   [[nodiscard]] float limit_at(float x, float y) const { return around_[place_of(x, y)].limit; }
+  // As much as that at least, anywhere in the box of two places, which may lie beside the picture. Infinite if they are
+  // far apart: of long edges some part is seen more often than not.
+  [[nodiscard]] float limit_around(Vec2f a, Vec2f b) const {
+    const auto cell = [](float v, int size) {
+      return int(std::clamp(v, 0.0F, float(size)) * (1.0F / kSide) + 0.5F);
+    };
+    const int left = cell(std::min(a.x, b.x), width_), right = cell(std::max(a.x, b.x), width_);
+    const int top = cell(std::min(a.y, b.y), height_), bottom = cell(std::max(a.y, b.y), height_);
+    if (right - left > 1 || bottom - top > 1) return std::numeric_limits<float>::infinity();
+    const Around *const upper = around_row(top), *const lower = around_row(bottom);
+    return std::max(std::max(upper[left].limit, upper[right].limit),
+                    std::max(lower[left].limit, lower[right].limit));
+  }
   // The smallest depth of the points around each pixel of a row; it is the same for a row unless that changes there.
   void copy_nearest(int y, std::span<float> out) const;
   [[nodiscard]] static bool row_changes_at(int y) { return (y + kSide / 2) % kSide == 0; }
@@ -48,6 +64,10 @@ class DepthCells {
   [[nodiscard]] std::size_t place_of(float x, float y) const {
     const int i = int(x * (1.0F / kSide) + 0.5F), j = int(y * (1.0F / kSide) + 0.5F);
     return std::size_t(j) * std::size_t(columns_ + 1) + std::size_t(i);
+  }
+
+  [[nodiscard]] const Around* around_row(int row) const {
+    return around_.data() + std::size_t(row) * std::size_t(columns_ + 1);
   }
 
   int width_, height_, columns_, rows_;

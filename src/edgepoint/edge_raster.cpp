@@ -1,6 +1,7 @@
 #include "edgepoint/edge_raster.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -38,8 +39,12 @@ struct Clip {
 // in double as far as its pixel goes: crossings with rows and columns always agree on the way through the pixels.
 constexpr double kGrid = 256;  // places a pixel
 
+// Rounds half away from zero, as std::round(), which is a call, does.
 float on_grid(double v) {
-  return float(std::round(v * kGrid) / kGrid);
+  const double places = v * kGrid;
+  const int below = int(places);
+  const double rest = places - below;
+  return float((below + (rest >= 0.5 ? 1 : 0) - (rest <= -0.5 ? 1 : 0)) / kGrid);
 }
 
 // Much less than the distance of a crossing from a corner that it does not pass through.
@@ -52,8 +57,9 @@ bool is_corner(double v) {
   return std::floor(2 * v) == 2 * v;
 }
 
-std::uint8_t eighth(double position, int pixel) {
-  return std::uint8_t(1U << unsigned(std::clamp(int((position - pixel) * 8), 0, 7)));
+// place: along the side, 0 to 1.
+unsigned eighth(double place) {
+  return 1U << unsigned(std::clamp(int(place * 8), 0, 7));
 }
 
 // One segment, and the lines of one band.
@@ -61,7 +67,13 @@ class Marker {
  public:
   Marker(const ScreenEdge& e, const DepthCells& depth, RowBand band, int width, int height,
          Crossings& crossings)
-      : e_(e), depth_(depth), band_(band), width_(width), height_(height), crossings_(crossings) {}
+      : e_(e),
+        depth_(depth),
+        band_(band),
+        width_(width),
+        height_(height),
+        columns_{lines_of(crossings.left), lines_of(crossings.mid_column)},
+        rows_{lines_of(crossings.upper), lines_of(crossings.mid_row)} {}
 
   // Lines x = j / 2.
   void mark_columns() {
@@ -80,12 +92,7 @@ class Marker {
       if (dy * dx > 0 && is_corner(y)) y -= kAside;
       const int row = int(std::floor(y));
       if (row < band_.first || row >= band_.last) continue;
-      if (is_hidden(float(x), float(y), float(from / dx))) continue;
-      if (j % 2 == 0) {
-        crossings_.left.row(row)[j / 2] |= eighth(y, row);
-      } else {
-        crossings_.mid_column.row(row)[j / 2] |= eighth(y, row);
-      }
+      mark(columns_[j & 1], row, j / 2, bit_seen(float(x), float(y), float(from / dx), y - row));
     }
   }
 
@@ -102,12 +109,7 @@ class Marker {
       const double x = double(e_.x0) + from * dx / dy;
       const int column = int(std::floor(x));
       if (column < 0 || column >= width_) continue;
-      if (is_hidden(float(x), float(y), float(from / dy))) continue;
-      if (j % 2 == 0) {
-        crossings_.upper.row(j / 2)[column] |= eighth(x, column);
-      } else {
-        crossings_.mid_row.row(j / 2)[column] |= eighth(x, column);
-      }
+      mark(rows_[j & 1], j / 2, column, bit_seen(float(x), float(y), float(from / dy), x - column));
     }
   }
 
@@ -122,20 +124,57 @@ class Marker {
     last = std::min(last, int(std::ceil(2 * upper)) + 1);
   }
 
-  [[nodiscard]] bool is_hidden(float x, float y, float t) const {
+  // Of lines between pixels, or through their middles.
+  struct Lines {
+    std::uint8_t* start;
+    std::size_t stride;
+  };
+  static Lines lines_of(CrossingRows& rows) { return {rows.row(0), rows.stride()}; }
+
+  static void mark(const Lines& lines, int y, int x, unsigned bit) {
+    std::uint8_t& at = lines.start[std::size_t(y) * lines.stride + std::size_t(x)];
+    at = std::uint8_t(at | bit);
+  }
+
+  // The bit of a crossing, 0 where it is hidden: which of them are can't be guessed, so there is no branch.
+  [[nodiscard]] unsigned bit_seen(float x, float y, float t, double place) const {
     const float inverse =
         e_.inverse_depth0 + std::clamp(t, 0.0F, 1.0F) * (e_.inverse_depth1 - e_.inverse_depth0);
-    return inverse * depth_.limit_at(std::clamp(x, 0.0F, float(width_)),
-                                     std::clamp(y, 0.0F, float(height_))) <
-           1;
+    const bool hidden = inverse * depth_.limit_at(std::clamp(x, 0.0F, float(width_)),
+                                                  std::clamp(y, 0.0F, float(height_))) <
+                        1;
+    return eighth(place) & (unsigned(hidden) - 1U);
   }
 
   const ScreenEdge& e_;
   const DepthCells& depth_;
   RowBand band_;
   int width_, height_;
-  Crossings& crossings_;
+  std::array<Lines, 2> columns_, rows_;
 };
+
+// False if an edge crosses none of the lines, or is hidden wherever it does.
+bool may_be_seen(const ScreenEdge& e, const DepthCells& depth) {
+  const auto half = [](float v) { return std::floor(2 * v); };
+  const bool crosses = (half(e.x0) != half(e.x1)) | (half(e.y0) != half(e.y1));
+  // More than what is added by rounding, where inverse depths are interpolated.
+  constexpr float kAbove = 1.00001F;
+  const float nearest = std::max(e.inverse_depth0, e.inverse_depth1) * kAbove;
+  return crosses & !(nearest * depth.limit_around({e.x0, e.y0}, {e.x1, e.y1}) < 1);
+}
+
+template <class Edge>
+void project_seen_of(const PixelView& view, std::span<const Edge> edges, const DepthCells& depth,
+                     std::vector<ScreenEdge>& seen) {
+  seen.resize(edges.size());
+  std::size_t count = 0;
+  // Which edges are seen can't be guessed: each is written where the last that wasn't was.
+  for (const Edge& edge : edges) {
+    seen[count] = project_edge(view, edge);
+    count += may_be_seen(seen[count], depth) ? 1 : 0;
+  }
+  seen.resize(count);
+}
 
 void clear(CrossingRows& rows, int first, int last) {
   std::memset(rows.row(first), 0, std::size_t(last - first) * rows.stride());
@@ -178,6 +217,16 @@ ScreenEdge project_edge(const PixelView& view, const SoftEdge& edge) {
   const double width = area / std::hypot(along.x, along.y);
   if (width > kWidestPenumbra || (edge.is_umbra && width < kNarrowestPenumbra)) return {};
   return e;
+}
+
+void project_seen(const PixelView& view, std::span<const WorldEdge> edges, const DepthCells& depth,
+                  std::vector<ScreenEdge>& seen) {
+  project_seen_of(view, edges, depth, seen);
+}
+
+void project_seen(const PixelView& view, std::span<const SoftEdge> edges, const DepthCells& depth,
+                  std::vector<ScreenEdge>& seen) {
+  project_seen_of(view, edges, depth, seen);
 }
 
 void clear_crossings(RowBand band, int height_px, Crossings& crossings) {

@@ -43,6 +43,13 @@ ScreenEdge project_edge(const PixelView& view, const WorldEdge& edge);
 // from pixel to pixel, or so narrow that its outer edge stands for both.
 ScreenEdge project_edge(const PixelView& view, const SoftEdge& edge);
 
+// Of edges those that need be rasterised, in their order: the others cross none of the lines, or are hidden wherever
+// they do.
+void project_seen(const PixelView& view, std::span<const WorldEdge> edges, const DepthCells& depth,
+                  std::vector<ScreenEdge>& seen);
+void project_seen(const PixelView& view, std::span<const SoftEdge> edges, const DepthCells& depth,
+                  std::vector<ScreenEdge>& seen);
+
 // Of a band's rows. Bands share nothing.
 void clear_crossings(RowBand band, int height_px, Crossings& crossings);
 

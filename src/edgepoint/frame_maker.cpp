@@ -107,18 +107,15 @@ void FrameMaker::rasterize(const PixelView& view, const FrameEdges& edges, int t
     const std::span of_bands = std::span(screen_edges_).subspan(c * bands, bands);
     for (std::vector<ScreenEdge>& list : of_bands) list.clear();
     const auto hand_out = [&](const ScreenEdge& edge) {
-      if (edge.x0 == edge.x1 && edge.y0 == edge.y1) return;
       const auto [upper, lower] = std::minmax(edge.y0, edge.y1);
       // Each band has the line between it and the next.
       const int first = std::max(int(std::floor(upper)) - 1, 0) / kBandRows;
       const int last = std::min(int(std::floor(lower)) + 1, image_.height_px - 1) / kBandRows;
       for (int b = first; b <= last; ++b) of_bands[std::size_t(b)].push_back(edge);
     };
-    std::visit(
-        [&](const auto& chunk) {
-          for (const auto& edge : chunk) hand_out(project_edge(view, edge));
-        },
-        chunks[c]);
+    std::vector<ScreenEdge> seen;
+    std::visit([&](const auto& chunk) { project_seen(view, chunk, depth_, seen); }, chunks[c]);
+    std::ranges::for_each(seen, hand_out);
   });
   parallel_for(bands, {.grain = 1, .threads = threads}, [&](std::size_t b) {
     clear_crossings(bands_[b], image_.height_px, image_.crossings);
