@@ -11,14 +11,9 @@
 namespace arris {
 namespace {
 
-// Nearer to the eye, in parts of the edge's depth, an edge is cut off.
-constexpr double kNear = 1e-6;
 // Pixels. Interpolation has a reach of two.
 constexpr double kWidestPenumbra = 2;
 constexpr double kNarrowestPenumbra = 1;
-// Pixels around the picture that edges are drawn to.
-constexpr double kAround = 2;
-
 struct Clip {
   double from = 0, to = 1;
   // Keeps where start + t·change ≥ 0; false if that is nowhere.
@@ -35,16 +30,12 @@ struct Clip {
   }
 };
 
-// Ends lie on a grid so fine that it is not seen, and so coarse that where an edge crosses a line is computed exactly
-// in double as far as its pixel goes: crossings with rows and columns always agree on the way through the pixels.
-constexpr double kGrid = 256;  // places a pixel
-
 // Rounds half away from zero, as std::round(), which is a call, does.
 float on_grid(double v) {
-  const double places = v * kGrid;
+  const double places = v * kScreenGrid;
   const int below = int(places);
   const double rest = places - below;
-  return float((below + (rest >= 0.5 ? 1 : 0) - (rest <= -0.5 ? 1 : 0)) / kGrid);
+  return float((below + (rest >= 0.5 ? 1 : 0) - (rest <= -0.5 ? 1 : 0)) / kScreenGrid);
 }
 
 // Much less than the distance of a crossing from a corner that it does not pass through.
@@ -153,29 +144,6 @@ class Marker {
   std::array<Lines, 2> columns_, rows_;
 };
 
-// False if an edge crosses none of the lines, or is hidden wherever it does.
-bool may_be_seen(const ScreenEdge& e, const DepthCells& depth) {
-  const auto half = [](float v) { return std::floor(2 * v); };
-  const bool crosses = (half(e.x0) != half(e.x1)) | (half(e.y0) != half(e.y1));
-  // More than what is added by rounding, where inverse depths are interpolated.
-  constexpr float kAbove = 1.00001F;
-  const float nearest = std::max(e.inverse_depth0, e.inverse_depth1) * kAbove;
-  return crosses & !(nearest * depth.limit_around({e.x0, e.y0}, {e.x1, e.y1}) < 1);
-}
-
-template <class Edge>
-void project_seen_of(const PixelView& view, std::span<const Edge> edges, const DepthCells& depth,
-                     std::vector<ScreenEdge>& seen) {
-  seen.resize(edges.size());
-  std::size_t count = 0;
-  // Which edges are seen can't be guessed: each is written where the last that wasn't was.
-  for (const Edge& edge : edges) {
-    seen[count] = project_edge(view, edge);
-    count += may_be_seen(seen[count], depth) ? 1 : 0;
-  }
-  seen.resize(count);
-}
-
 void clear(CrossingRows& rows, int first, int last) {
   std::memset(rows.row(first), 0, std::size_t(last - first) * rows.stride());
 }
@@ -184,13 +152,13 @@ void clear(CrossingRows& rows, int first, int last) {
 
 ScreenEdge project_edge(const PixelView& view, const WorldEdge& edge) {
   const Vec3d a = project(view, Vec3d(edge.a)), b = project(view, Vec3d(edge.b));
-  const double near = kNear * std::max(a.z, b.z);
+  const double near = kNearest * std::max(a.z, b.z);
   if (!(near > 0)) return {};
   Clip clip;
-  const double right = view.width_px + kAround, bottom = view.height_px + kAround;
+  const double right = view.width_px + kAroundPicture, bottom = view.height_px + kAroundPicture;
   const bool inside = clip.keep(a.z - near, b.z - near) &&
-                      clip.keep(a.x + kAround * a.z, b.x + kAround * b.z) &&
-                      clip.keep(a.y + kAround * a.z, b.y + kAround * b.z) &&
+                      clip.keep(a.x + kAroundPicture * a.z, b.x + kAroundPicture * b.z) &&
+                      clip.keep(a.y + kAroundPicture * a.z, b.y + kAroundPicture * b.z) &&
                       clip.keep(right * a.z - a.x, right * b.z - b.x) &&
                       clip.keep(bottom * a.z - a.y, bottom * b.z - b.y);
   if (!inside) return {};
@@ -200,33 +168,26 @@ ScreenEdge project_edge(const PixelView& view, const WorldEdge& edge) {
           on_grid(q.x / q.z), on_grid(q.y / q.z), float(1 / q.z)};
 }
 
-ScreenEdge project_edge(const PixelView& view, const SoftEdge& edge) {
-  const ScreenEdge e = project_edge(view, edge.edge);
-  if (edge.penumbra == Vec3f{}) return e;
+bool penumbra_matters(const PixelView& view, const SoftEdge& edge, const ScreenEdge& e) {
+  if (edge.penumbra == Vec3f{}) return true;
   const Vec2d along{double(e.x1) - double(e.x0), double(e.y1) - double(e.y0)};
-  if (along.x == 0 && along.y == 0) return {};
+  if (along.x == 0 && along.y == 0) return false;
   const Vec3d middle = (Vec3d(edge.edge.a) + Vec3d(edge.edge.b)) / 2;
   const Vec3d beyond = project(view, middle + Vec3d(edge.penumbra));
   // The other side lies behind the eye.
-  if (!(beyond.z > 0)) return {};
+  if (!(beyond.z > 0)) return false;
   const Vec2d across{beyond.x / beyond.z - double(e.x0), beyond.y / beyond.z - double(e.y0)};
   const double area = std::abs(across.x * along.y - across.y * along.x);
   // Most penumbras are wide, which is seen without a root.
   constexpr double kSurelyWide = 1.001 * kWidestPenumbra * kWidestPenumbra;
-  if (area * area > kSurelyWide * (along.x * along.x + along.y * along.y)) return {};
+  if (area * area > kSurelyWide * (along.x * along.x + along.y * along.y)) return false;
   const double width = area / std::hypot(along.x, along.y);
-  if (width > kWidestPenumbra || (edge.is_umbra && width < kNarrowestPenumbra)) return {};
-  return e;
+  return width <= kWidestPenumbra && !(edge.is_umbra && width < kNarrowestPenumbra);
 }
 
-void project_seen(const PixelView& view, std::span<const WorldEdge> edges, const DepthCells& depth,
-                  std::vector<ScreenEdge>& seen) {
-  project_seen_of(view, edges, depth, seen);
-}
-
-void project_seen(const PixelView& view, std::span<const SoftEdge> edges, const DepthCells& depth,
-                  std::vector<ScreenEdge>& seen) {
-  project_seen_of(view, edges, depth, seen);
+ScreenEdge project_edge(const PixelView& view, const SoftEdge& edge) {
+  const ScreenEdge e = project_edge(view, edge.edge);
+  return penumbra_matters(view, edge, e) ? e : ScreenEdge{};
 }
 
 void clear_crossings(RowBand band, int height_px, Crossings& crossings) {

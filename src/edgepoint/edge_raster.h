@@ -19,6 +19,14 @@
 
 namespace arris {
 
+// Nearer to the eye, in parts of the edge's depth, an edge is cut off.
+inline constexpr double kNearest = 1e-6;
+// Pixels around the picture that edges are drawn to.
+inline constexpr double kAroundPicture = 2;
+// Ends lie on a grid so fine that it is not seen, and so coarse that where an edge crosses a line is computed exactly
+// in double as far as its pixel goes: crossings with rows and columns always agree on the way through the pixels.
+inline constexpr double kScreenGrid = 256;  // places a pixel
+
 struct WorldEdge {
   Vec3f a, b;
 };
@@ -39,16 +47,12 @@ struct ScreenEdge {
 // An edge of no length where nothing of it is in the picture.
 ScreenEdge project_edge(const PixelView& view, const WorldEdge& edge);
 
-// Of no length also where the edge does not matter: the penumbra is so wide in the picture that light changes little
-// from pixel to pixel, or so narrow that its outer edge stands for both.
-ScreenEdge project_edge(const PixelView& view, const SoftEdge& edge);
+// False where a shadow's edge does not matter: the penumbra is so wide in the picture that light changes little from
+// pixel to pixel, or so narrow that its outer edge stands for both.
+bool penumbra_matters(const PixelView& view, const SoftEdge& edge, const ScreenEdge& projected);
 
-// Of edges those that need be rasterised, in their order: the others cross none of the lines, or are hidden wherever
-// they do.
-void project_seen(const PixelView& view, std::span<const WorldEdge> edges, const DepthCells& depth,
-                  std::vector<ScreenEdge>& seen);
-void project_seen(const PixelView& view, std::span<const SoftEdge> edges, const DepthCells& depth,
-                  std::vector<ScreenEdge>& seen);
+// Of no length also where the edge does not matter.
+ScreenEdge project_edge(const PixelView& view, const SoftEdge& edge);
 
 // Of a band's rows. Bands share nothing.
 void clear_crossings(RowBand band, int height_px, Crossings& crossings);

@@ -9,6 +9,7 @@
 
 #include "base/check.h"
 #include "base/parallel_for.h"
+#include "edgepoint/edge_projection.h"
 #include "edgepoint/fresh_samples.h"
 #include "edgepoint/hidden_points.h"
 #include "edgepoint/hole_filler.h"
