@@ -1,10 +1,39 @@
 #include "edgepoint/complex_pixel.h"
 
+#include <hwy/highway.h>
+
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cstddef>
 
 #include "edgepoint/kernel.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace arris::HWY_NAMESPACE {
+namespace {
+
+namespace hn = hwy::HWY_NAMESPACE;
+
+// Of the taps whose bits are set. Four lanes are on every processor.
+HWY_INLINE Rgb weighted_mean(std::uint32_t reached, const CountedColor* colors,
+                             const float* weights, const SubpixelTapSteps& taps, Rgb fallback) {
+  const hn::FixedTag<float, 4> d;
+  auto sum = hn::Zero(d);
+  for (; reached != 0; reached &= reached - 1) {
+    const SubpixelTapStep& tap = taps[std::size_t(std::countr_zero(reached))];
+    const auto weight = hn::Set(d, tap.kernel * weights[tap.step]);
+    sum = hn::Add(sum, hn::Mul(hn::Load(d, colors[tap.step].rgb1.data()), weight));
+  }
+  alignas(16) std::array<float, 4> rgb1;
+  hn::Store(sum, d, rgb1.data());
+  if (!(rgb1[3] > 0)) return fallback;
+  return Rgb{rgb1[0], rgb1[1], rgb1[2]} * (1 / rgb1[3]);
+}
+
+}  // namespace
+}  // namespace arris::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
 
 namespace arris {
 
@@ -70,32 +99,24 @@ void ComplexPixels::find_reach(int y) {
 }
 
 // Sums are always made in this order.
-ComplexPixels::Taps ComplexPixels::taps_of(int row) const {
-  Taps taps;
+SubpixelTapSteps ComplexPixels::taps_of(int row) const {
+  SubpixelTapSteps taps;
   for (std::size_t k = 0; k < kSubpixelTaps; ++k) {
     const auto [dx, dy] = subpixel_tap(k);
-    taps[k] = {subpixels_.place(dx, row + dy) - subpixels_.place(0, row), kernel_weight(dx, dy)};
+    taps[k] = {int(subpixels_.place(dx, row + dy) - subpixels_.place(0, row)),
+               kernel_weight(dx, dy)};
   }
   return taps;
 }
 
-Rgb ComplexPixels::region_color(std::uint32_t reached, std::ptrdiff_t place, const Taps& taps,
-                                Rgb fallback) const {
-  const CountedColor* const colors = subpixels_.colors() + place;
-  const float* const weights = subpixels_.weights() + place;
-  std::array<float, 4> sum{};
-  for (; reached != 0; reached &= reached - 1) {
-    const Tap& tap = taps[std::size_t(std::countr_zero(reached))];
-    const float w = tap.kernel * weights[tap.step];
-    const CountedColor& color = colors[tap.step];
-    for (std::size_t c = 0; c < 4; ++c) sum[c] += color.rgb1[c] * w;
-  }
-  const float weight = sum[3];
-  if (!(weight > 0)) return fallback;
-  return Rgb{sum[0], sum[1], sum[2]} * (1 / weight);
+Rgb ComplexPixels::region_color(std::uint32_t reached, std::ptrdiff_t place,
+                                const SubpixelTapSteps& taps, Rgb fallback) const {
+  return HWY_NAMESPACE::weighted_mean(reached, subpixels_.colors() + place,
+                                      subpixels_.weights() + place, taps, fallback);
 }
 
-Rgb ComplexPixels::color_of(int x, int y, const std::array<Taps, 2>& taps, Rgb fallback) const {
+Rgb ComplexPixels::color_of(int x, int y, const std::array<SubpixelTapSteps, 2>& taps,
+                            Rgb fallback) const {
   Rgb sum;
   for (int k = 0; k < 4; ++k) {
     const int column = 2 * x + k % 2;
@@ -127,7 +148,7 @@ void ComplexPixels::reconstruct_row(int y, const ComplexPixelColors& colors, flo
   fill(y + 1, colors.around.below, colors);
   find_reach(y - 1);
   find_reach(y);
-  std::array<Taps, 2> taps;
+  std::array<SubpixelTapSteps, 2> taps;
   for (int j = 0; j < 2; ++j) {
     const auto of = std::size_t(j);
     find_subpixel_taps(subpixels_.planes(), reach_, 2 * y + j, complex_,

@@ -30,6 +30,13 @@ struct ComplexPixelColors {
   ColorRows* painted = nullptr;
 };
 
+// Where a tap's subpixel is from its own, in arrays of rows of subpixels.
+struct SubpixelTapStep {
+  int step;
+  float kernel;
+};
+using SubpixelTapSteps = std::array<SubpixelTapStep, kSubpixelTaps>;
+
 class ComplexPixels {
  public:
   explicit ComplexPixels(const EdgePointImage& image);
@@ -45,21 +52,17 @@ class ComplexPixels {
     int filled = -2, reached = -2;  // which row of the picture
     Words wanted;                   // pixels that some complex pixel has around it
   };
-  struct Tap {
-    std::ptrdiff_t step;
-    float kernel;
-  };
-  using Taps = std::array<Tap, kSubpixelTaps>;
 
   [[nodiscard]] Row& row(int y) { return rows_[std::size_t(y & 3)]; }
   [[nodiscard]] std::uint64_t complex_word(int y, std::size_t word) const;
   void find_wanted(int y, Words& wanted) const;
   void fill(int y, const PrimaryRows& primary, const ComplexPixelColors& colors);
   void find_reach(int y);
-  [[nodiscard]] Taps taps_of(int row) const;
-  [[nodiscard]] Rgb color_of(int x, int y, const std::array<Taps, 2>& taps, Rgb fallback) const;
-  [[nodiscard]] Rgb region_color(std::uint32_t reached, std::ptrdiff_t place, const Taps& taps,
-                                 Rgb fallback) const;
+  [[nodiscard]] SubpixelTapSteps taps_of(int row) const;
+  [[nodiscard]] Rgb color_of(int x, int y, const std::array<SubpixelTapSteps, 2>& taps,
+                             Rgb fallback) const;
+  [[nodiscard]] Rgb region_color(std::uint32_t reached, std::ptrdiff_t place,
+                                 const SubpixelTapSteps& taps, Rgb fallback) const;
 
   const EdgePointImage& image_;
   SubpixelRows subpixels_;

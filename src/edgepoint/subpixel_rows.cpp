@@ -25,33 +25,17 @@ constexpr auto kSpread = [] {
   }
   return tables;
 }();
-// `half`: 0 the first four segments of a side, 1 the last.
-std::uint32_t half_side(std::uint8_t crossings, unsigned half,
-                        const std::array<std::uint8_t, 16>& spread) {
-  return spread[crossings >> (4 * half) & 15U];
-}
-
-// What crosses a pixel's sides and middle lines.
-struct PixelLines {
-  std::uint8_t top, mid_row, bottom, left, mid_column, right;
-
-  [[nodiscard]] bool any() const {
-    return (top | mid_row | bottom | left | mid_column | right) != 0;
-  }
-  // Of a subpixel, as boundary_mask() has them.
-  [[nodiscard]] std::uint32_t boundary(unsigned column, unsigned row) const {
-    return half_side(row == 0 ? top : mid_row, column, kSpread.forward) |
-           half_side(column == 0 ? mid_column : right, row, kSpread.forward) << 8U |
-           half_side(row == 0 ? mid_row : bottom, column, kSpread.backward) << 16U |
-           half_side(column == 0 ? left : mid_column, row, kSpread.backward) << 24U;
-  }
-};
 
 // The region that four of the sixteen cells of a pixel lie in, the first and those right of it and below. The two bits
 // of each are looked at together.
 RegionOf region_of_four(std::uint32_t cells, std::uint32_t first) {
   const std::uint32_t four = cells >> (2 * first) & 0xf0fU;
   return four == 0 ? RegionOf::a : four == 0x505U ? RegionOf::b : RegionOf::ambiguous;
+}
+
+// Of four, row after row.
+unsigned subpixel_of(PointKey point) {
+  return point.cell() / 8 * 2 + point.cell() % 4 / 2;
 }
 
 // Each of 32 bits twice.
@@ -64,14 +48,85 @@ Word doubled(Word bits) {
   return bits | bits << 1U;
 }
 
-// Four bits as the lowest of four bytes.
-constexpr auto kBytes = [] {
-  std::array<std::uint32_t, 16> table{};
-  for (unsigned n = 0; n < 16; ++n) {
-    for (unsigned bit = 0; bit < 4; ++bit) table[n] |= (n >> bit & 1U) << 8 * bit;
+// Which corners are in the primary region (the four lower bits) and the secondary one, as bits 0 and 4 of a byte each.
+constexpr auto kCornerBytes = [] {
+  std::array<std::uint32_t, 256> table{};
+  for (unsigned n = 0; n < 256; ++n) {
+    for (unsigned corner = 0; corner < 4; ++corner) {
+      table[n] |= ((n >> corner & 1U) | (n >> (4 + corner) & 1U) << 4U) << 8 * corner;
+    }
   }
   return table;
 }();
+
+// A subpixel without its point.
+struct SubpixelKind {
+  PixelCode code;
+  std::uint8_t corners = 0;  // as in kCornerBytes
+
+  void set_primary(bool is_a) {
+    code.set_primary(is_a);
+    const unsigned primary = edge_tables().corners_a[code.edge()] ^ (is_a ? 0U : 15U);
+    corners = std::uint8_t(primary | (primary ^ 15U) << 4U);
+  }
+};
+
+// How the four segments of a half side are crossed: by nothing, one of them, or more, which is all the same: of
+// subpixels no two segments are neighbours, which would be merged (merge_coincident()). So that the tables are small.
+constexpr unsigned kSideStates = 6;
+constexpr auto kSideState = [] {
+  std::array<std::uint8_t, 16> states{};
+  for (unsigned n = 0; n < 16; ++n) {
+    const int count = std::popcount(n);
+    states[n] = std::uint8_t(count == 0 ? 0 : count == 1 ? 1 + std::countr_zero(n) : 5);
+  }
+  return states;
+}();
+constexpr std::array<unsigned, kSideStates> kCrossingsOfState{0, 1, 2, 4, 8, 3};
+
+// What is found of each subpixel by its crossings and of each pixel by its code, found before.
+struct SubpixelTables {
+  // By the states of the sides: top + 6 (right + 6 (bottom + 6 left)).
+  std::array<SubpixelKind, kSideStates * kSideStates * kSideStates * kSideStates> kinds;
+  // Subpixels that lie in region A, and in region B, a bit each; by the pixel's code.
+  std::array<std::uint8_t, kEdgeCodes> in_a{}, in_b{};
+};
+
+// Of the crossings of its sides, four bits each.
+SubpixelKind kind_of(unsigned top, unsigned right, unsigned bottom, unsigned left) {
+  const std::uint32_t boundary =
+      std::uint32_t(kSpread.forward[top]) | std::uint32_t(kSpread.forward[right]) << 8U |
+      std::uint32_t(kSpread.backward[bottom]) << 16U | std::uint32_t(kSpread.backward[left]) << 24U;
+  SubpixelKind kind{PixelCode(classify_boundary(boundary))};
+  if (kind.code.is_empty()) kind.corners = 15;
+  if (kind.code.is_simple()) kind.set_primary(edge_tables().area_a[kind.code.edge()] > 0.5F);
+  return kind;
+}
+
+const SubpixelTables& subpixel_tables() {
+  static const SubpixelTables kTables = [] {
+    SubpixelTables tables;
+    for (unsigned i = 0; i < tables.kinds.size(); ++i) {
+      const auto side = [&](unsigned divisor) {
+        return kCrossingsOfState[i / divisor % kSideStates];
+      };
+      tables.kinds[i] = kind_of(side(1), side(6), side(36), side(216));
+    }
+    for (std::uint32_t edge = 0; edge < kEdgeCodes; ++edge) {
+      if (!is_simple(edge)) continue;
+      for (unsigned k = 0; k < 4; ++k) {
+        const RegionOf region =
+            region_of_four(edge_tables().cells[edge], 8 * (k / 2) + 2 * (k % 2));
+        tables.in_a[edge] = std::uint8_t(tables.in_a[edge] | (region == RegionOf::a ? 1U << k : 0));
+        tables.in_b[edge] = std::uint8_t(tables.in_b[edge] | (region == RegionOf::b ? 1U << k : 0));
+      }
+    }
+    // All of a pixel that is crossed in its middle only.
+    tables.in_b[kEmptyEdge] = 15;
+    return tables;
+  }();
+  return kTables;
+}
 
 }  // namespace
 
@@ -79,6 +134,7 @@ constexpr auto kBytes = [] {
 struct SubpixelRows::RowInput {
   int y;
   const SubpixelColors& colors;
+  const SubpixelTables& tables;
   const std::uint8_t *top, *mid_row, *bottom, *left, *mid_column;
   const PixelCode* codes;
   const PointKey* points;
@@ -109,6 +165,7 @@ void SubpixelRows::fill(int y, std::span<const std::uint64_t> wanted,
   const std::size_t start = image_.offset(0, y);
   const RowInput in{y,
                     colors,
+                    subpixel_tables(),
                     c.upper.row(y),
                     c.mid_row.row(y),
                     c.upper.row(y + 1),
@@ -159,57 +216,54 @@ void SubpixelRows::add_plain(const RowInput& in, int x, WordBits& bits) {
     }
   }
   const PointKey point = in.points[x];
-  if (!point.is_none()) set_sample(in, x, point.cell() / 8 * 2 + point.cell() % 4 / 2, bits);
+  if (!point.is_none()) set_sample(in, x, subpixel_of(point), bits);
 }
 
 void SubpixelRows::add_crossed(const RowInput& in, int x, WordBits& bits) {
-  const EdgeTables& tables = edge_tables();
-  const PixelLines lines{in.top[x],  in.mid_row[x],    in.bottom[x],
-                         in.left[x], in.mid_column[x], in.left[x + 1]};
-  const PointKey point = in.points[x];
-  // The subpixel that it is in, of which there are four.
-  const unsigned in_subpixel = point.is_none() ? 4 : point.cell() / 8 * 2 + point.cell() % 4 / 2;
-  std::array<std::uint32_t, 4> primary{}, secondary{};  // corners of each subpixel
+  const unsigned top = in.top[x], mid_row = in.mid_row[x], bottom = in.bottom[x], left = in.left[x],
+                 mid_column = in.mid_column[x], right = in.left[x + 1];
+  const auto kind = [&](unsigned of_top, unsigned of_right, unsigned of_bottom, unsigned of_left) {
+    return in.tables.kinds[kSideState[of_top] + 6U * kSideState[of_right] +
+                           36U * kSideState[of_bottom] + 216U * kSideState[of_left]];
+  };
+  std::array<SubpixelKind, 4> kinds{
+      kind(top & 15U, mid_column & 15U, mid_row & 15U, left & 15U),
+      kind(top >> 4U, right & 15U, mid_row >> 4U, mid_column & 15U),
+      kind(mid_row & 15U, mid_column >> 4U, bottom & 15U, left >> 4U),
+      kind(mid_row >> 4U, right >> 4U, bottom >> 4U, mid_column >> 4U)};
+  const PixelCode whole = in.codes[x];
+  unsigned in_primary = (whole.primary_is_a() ? in.tables.in_a : in.tables.in_b)[whole.edge()];
   for (unsigned k = 0; k < 4; ++k) {
-    const unsigned column = k % 2, row = k / 2;
-    const std::uint32_t boundary = lines.boundary(column, row);
-    PixelCode code(classify_boundary(boundary));
-    if (boundary == 0) {
-      primary[k] = 15;
-      if (k == in_subpixel) {
-        set_sample(in, x, k, bits);
-      } else {
-        const PixelCode whole = in.codes[x];
-        const RegionOf of_whole = whole.primary_is_a() ? RegionOf::a : RegionOf::b;
-        const bool in_primary = whole.is_simple() ? region_of_four(tables.cells[whole.edge()],
-                                                                   8 * row + 2 * column) == of_whole
-                                                  : whole.is_empty();
-        if (in_primary) set_primary(in, x, k, bits);
-      }
-    } else if (!code.is_complex()) {
-      // Of a point that lies in a subpixel that edges cross, to a quarter of it: each quarter is four cells of the
-      // tables.
-      const RegionOf region =
-          k == in_subpixel ? region_of_four(tables.cells[code.edge()],
-                                            8 * (point.cell() / 4 % 2) + 2 * (point.cell() % 2))
-                           : RegionOf::ambiguous;
-      const bool primary_is_a =
-          region == RegionOf::ambiguous ? tables.area_a[code.edge()] > 0.5F : region == RegionOf::a;
-      code.set_primary(primary_is_a);
-      if (region != RegionOf::ambiguous) set_sample(in, x, k, bits);
-      primary[k] = tables.corners_a[code.edge()] ^ (primary_is_a ? 0U : 15U);
-      secondary[k] = primary[k] ^ 15U;
-    }
-    codes_[std::size_t(place(2 * x + int(column), 2 * in.y + int(row)))] = code;
+    in_primary &= ~((kinds[k].code.is_empty() ? 0U : 1U) << k);
+  }
+  const PointKey point = in.points[x];
+  if (!point.is_none()) {
+    const unsigned k = subpixel_of(point);
+    SubpixelKind& of_point = kinds[k];
+    // In a subpixel that edges cross, its place is known to a quarter of it: four cells of the tables.
+    const RegionOf region =
+        of_point.code.is_simple()
+            ? region_of_four(edge_tables().cells[of_point.code.edge()],
+                             8 * (point.cell() / 4 % 2) + 2 * (point.cell() % 2))
+            : RegionOf::ambiguous;
+    if (region != RegionOf::ambiguous) of_point.set_primary(region == RegionOf::a);
+    if (region != RegionOf::ambiguous || of_point.code.is_empty()) set_sample(in, x, k, bits);
+    if (of_point.code.is_empty()) in_primary &= ~(1U << k);
+  }
+  for (; in_primary != 0; in_primary &= in_primary - 1) {
+    set_primary(in, x, unsigned(std::countr_zero(in_primary)), bits);
   }
   const auto shift = unsigned(2 * x % 64);
-  for (std::size_t j = 0; j < 2; ++j) {
-    const std::uint32_t p = kBytes[primary[2 * j]] | kBytes[primary[2 * j + 1]] << 1U;
-    const std::uint32_t s = kBytes[secondary[2 * j]] | kBytes[secondary[2 * j + 1]] << 1U;
+  for (unsigned j = 0; j < 2; ++j) {
+    const SubpixelKind first = kinds[2 * j], second = kinds[2 * j + 1];
+    const std::uint32_t both = kCornerBytes[first.corners] | kCornerBytes[second.corners] << 1U;
     for (unsigned corner = 0; corner < 4; ++corner) {
-      bits.primary[corner][j] |= Word{p >> 8 * corner & 3U} << shift;
-      bits.secondary[corner][j] |= Word{s >> 8 * corner & 3U} << shift;
+      bits.primary[corner][j] |= Word{both >> 8 * corner & 3U} << shift;
+      bits.secondary[corner][j] |= Word{both >> (8 * corner + 4) & 3U} << shift;
     }
+    PixelCode* const codes = codes_.data() + place(2 * x, 2 * in.y + int(j));
+    codes[0] = first.code;
+    codes[1] = second.code;
   }
 }
 
