@@ -41,8 +41,10 @@ float on_grid(double v) {
 // Much less than the distance of a crossing from a corner that it does not pass through.
 constexpr double kAside = 1e-11;
 
-// Lines that are met sooner than it is found out which of them lie in a band.
+// Most edges cross no more lines of a direction.
 constexpr int kFewLines = 4;
+// Edges whose crossings are found before they are marked.
+constexpr std::size_t kEdgesAtOnce = 256;
 
 bool is_corner(double v) {
   return std::floor(2 * v) == 2 * v;
@@ -53,66 +55,100 @@ unsigned eighth(double place) {
   return 1U << unsigned(std::clamp(int(place * 8), 0, 7));
 }
 
-// One segment, and the lines of one band.
+// Segments, and the lines of one band.
 class Marker {
  public:
-  Marker(const ScreenEdge& e, const DepthCells& depth, RowBand band, int width, int height,
-         Crossings& crossings)
-      : e_(e),
-        depth_(depth),
+  Marker(const DepthCells& depth, RowBand band, int width, int height, Crossings& crossings)
+      : depth_(depth),
         band_(band),
         width_(width),
         height_(height),
         columns_{lines_of(crossings.left), lines_of(crossings.mid_column)},
         rows_{lines_of(crossings.upper), lines_of(crossings.mid_row)} {}
 
-  // Lines x = j / 2.
-  void mark_columns() {
-    const double dx = double(e_.x1) - double(e_.x0);
-    if (dx == 0) return;
-    const float lower = std::min(e_.x0, e_.x1), upper = std::max(e_.x0, e_.x1);
-    int first = int(std::floor(2 * lower)) + 1, last = int(std::floor(2 * upper));
-    first = std::max(first, 0);
-    last = std::min(last, 2 * width_);
-    const double dy = double(e_.y1) - double(e_.y0);
-    if (dy != 0 && last - first > kFewLines) limit_to_band(float(dy / dx), first, last);
-    for (int j = first; j <= last; ++j) {
-      const double x = 0.5 * j, from = x - double(e_.x0);
-      double y = double(e_.y0) + from * dy / dx;
-      // Exactly through a corner: as if everything lay a little to the right.
-      if (dy * dx > 0 && is_corner(y)) y -= kAside;
-      const int row = int(std::floor(y));
-      if (row < band_.first || row >= band_.last) continue;
-      mark(columns_[j & 1], row, j / 2, bit_seen(float(x), float(y), float(from / dx), y - row));
+  // How many lines a short edge crosses can't be guessed, so what crosses what is listed first, always as if there were
+  // kFewLines of them of which the next edge's overwrite those that aren't; and then marked without a branch.
+  void mark(std::span<const ScreenEdge> edges) {
+    struct Crossing {
+      std::uint32_t edge;
+      int line;
+    };
+    std::array<Crossing, kEdgesAtOnce * kFewLines> columns, rows;
+    std::size_t column_count = 0, row_count = 0;
+    for (std::uint32_t i = 0; i < edges.size(); ++i) {
+      const LineRange c = columns_of(edges[i]), r = rows_of(edges[i]);
+      if (std::max(c.count(), r.count()) > kFewLines) {
+        for (int j = c.first; j <= c.last; ++j) mark_column(edges[i], j);
+        for (int j = r.first; j <= r.last; ++j) mark_row(edges[i], j);
+        continue;
+      }
+      for (int k = 0; k < kFewLines; ++k) {
+        columns[column_count + std::size_t(k)] = {i, c.first + k};
+        rows[row_count + std::size_t(k)] = {i, r.first + k};
+      }
+      column_count += std::size_t(std::max(c.count(), 0));
+      row_count += std::size_t(std::max(r.count(), 0));
     }
-  }
-
-  // Lines y = j / 2.
-  void mark_rows() {
-    const double dx = double(e_.x1) - double(e_.x0), dy = double(e_.y1) - double(e_.y0);
-    if (dy == 0) return;
-    const float lower = std::min(e_.y0, e_.y1), upper = std::max(e_.y0, e_.y1);
-    const int first = std::max(int(std::floor(2 * lower)) + 1, 2 * band_.first);
-    const int past = band_.last == height_ ? 2 * height_ : 2 * band_.last - 1;
-    const int last = std::min(int(std::floor(2 * upper)), past);
-    for (int j = first; j <= last; ++j) {
-      const double y = 0.5 * j, from = y - double(e_.y0);
-      const double x = double(e_.x0) + from * dx / dy;
-      const int column = int(std::floor(x));
-      if (column < 0 || column >= width_) continue;
-      mark(rows_[j & 1], j / 2, column, bit_seen(float(x), float(y), float(from / dy), x - column));
+    for (std::size_t k = 0; k < column_count; ++k) {
+      mark_column(edges[columns[k].edge], columns[k].line);
     }
+    for (std::size_t k = 0; k < row_count; ++k) mark_row(edges[rows[k].edge], rows[k].line);
   }
 
  private:
+  struct LineRange {
+    int first, last;
+
+    [[nodiscard]] int count() const { return last - first + 1; }
+  };
+
+  // Lines x = j / 2 that an edge crosses.
+  [[nodiscard]] LineRange columns_of(const ScreenEdge& e) const {
+    const float lower = std::min(e.x0, e.x1), upper = std::max(e.x0, e.x1);
+    LineRange range{std::max(int(std::floor(2 * lower)) + 1, 0),
+                    std::min(int(std::floor(2 * upper)), 2 * width_)};
+    if (range.count() > kFewLines && e.y0 != e.y1) limit_to_band(e, range);
+    return range;
+  }
+  // Lines y = j / 2, of the band.
+  [[nodiscard]] LineRange rows_of(const ScreenEdge& e) const {
+    const float lower = std::min(e.y0, e.y1), upper = std::max(e.y0, e.y1);
+    const int past = band_.last == height_ ? 2 * height_ : 2 * band_.last - 1;
+    return {std::max(int(std::floor(2 * lower)) + 1, 2 * band_.first),
+            std::min(int(std::floor(2 * upper)), past)};
+  }
+
+  void mark_column(const ScreenEdge& e, int j) {
+    const double dx = double(e.x1) - double(e.x0), dy = double(e.y1) - double(e.y0);
+    const double x = 0.5 * j, from = x - double(e.x0);
+    double y = double(e.y0) + from * dy / dx;
+    // Exactly through a corner: as if everything lay a little to the right.
+    if (is_corner(y) && dy * dx > 0) y -= kAside;
+    const int row = int(std::floor(y));
+    if (row < band_.first || row >= band_.last) return;
+    mark(columns_[j & 1], row, j / 2, bit_seen(e, {float(x), float(y)}, float(from / dx), y - row));
+  }
+
+  void mark_row(const ScreenEdge& e, int j) {
+    const double dx = double(e.x1) - double(e.x0), dy = double(e.y1) - double(e.y0);
+    const double y = 0.5 * j, from = y - double(e.y0);
+    const double x = double(e.x0) + from * dx / dy;
+    const int column = int(std::floor(x));
+    if (column < 0 || column >= width_) return;
+    mark(rows_[j & 1], j / 2, column,
+         bit_seen(e, {float(x), float(y)}, float(from / dy), x - column));
+  }
+
   // Leaves out lines that are met outside of the band by more than a pixel.
-  void limit_to_band(float slope, int& first, int& last) const {
-    const float at_first = e_.x0 + (float(band_.first) - 1 - e_.y0) / slope;
-    const float at_last = e_.x0 + (float(band_.last) + 1 - e_.y0) / slope;
+  void limit_to_band(const ScreenEdge& e, LineRange& range) const {
+    const double dx = double(e.x1) - double(e.x0), dy = double(e.y1) - double(e.y0);
+    const auto slope = float(dy / dx);
+    const float at_first = e.x0 + (float(band_.first) - 1 - e.y0) / slope;
+    const float at_last = e.x0 + (float(band_.last) + 1 - e.y0) / slope;
     const float lower = std::clamp(std::min(at_first, at_last), -1.0F, float(width_) + 1);
     const float upper = std::clamp(std::max(at_first, at_last), -1.0F, float(width_) + 1);
-    first = std::max(first, int(std::floor(2 * lower)) - 1);
-    last = std::min(last, int(std::ceil(2 * upper)) + 1);
+    range.first = std::max(range.first, int(std::floor(2 * lower)) - 1);
+    range.last = std::min(range.last, int(std::ceil(2 * upper)) + 1);
   }
 
   // Of lines between pixels, or through their middles.
@@ -128,16 +164,15 @@ class Marker {
   }
 
   // The bit of a crossing, 0 where it is hidden: which of them are can't be guessed, so there is no branch.
-  [[nodiscard]] unsigned bit_seen(float x, float y, float t, double place) const {
+  [[nodiscard]] unsigned bit_seen(const ScreenEdge& e, Vec2f at, float t, double place) const {
     const float inverse =
-        e_.inverse_depth0 + std::clamp(t, 0.0F, 1.0F) * (e_.inverse_depth1 - e_.inverse_depth0);
-    const bool hidden = inverse * depth_.limit_at(std::clamp(x, 0.0F, float(width_)),
-                                                  std::clamp(y, 0.0F, float(height_))) <
+        e.inverse_depth0 + std::clamp(t, 0.0F, 1.0F) * (e.inverse_depth1 - e.inverse_depth0);
+    const bool hidden = inverse * depth_.limit_at(std::clamp(at.x, 0.0F, float(width_)),
+                                                  std::clamp(at.y, 0.0F, float(height_))) <
                         1;
     return eighth(place) & (unsigned(hidden) - 1U);
   }
 
-  const ScreenEdge& e_;
   const DepthCells& depth_;
   RowBand band_;
   int width_, height_;
@@ -199,13 +234,9 @@ void clear_crossings(RowBand band, int height_px, Crossings& crossings) {
 
 void rasterize_edges(std::span<const ScreenEdge> edges, const DepthCells& depth, RowBand band,
                      int width_px, int height_px, Crossings& crossings) {
-  for (const ScreenEdge& edge : edges) {
-    const float lower = std::min(edge.y0, edge.y1), upper = std::max(edge.y0, edge.y1);
-    const bool is_last = band.last == height_px;
-    if (upper < float(band.first) || lower > float(band.last) + (is_last ? 1.0F : 0.0F)) continue;
-    Marker marker(edge, depth, band, width_px, height_px, crossings);
-    marker.mark_columns();
-    marker.mark_rows();
+  Marker marker(depth, band, width_px, height_px, crossings);
+  for (std::size_t at = 0; at < edges.size(); at += kEdgesAtOnce) {
+    marker.mark(edges.subspan(at, std::min(kEdgesAtOnce, edges.size() - at)));
   }
 }
 
