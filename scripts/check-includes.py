@@ -89,6 +89,8 @@ def source_files(root):
     folders = ["include", "src", "apps", "tests", "bench", "examples", "scripts", "cmake"]
     for folder in folders:
         for path in sorted((root / folder).rglob("*")):
+            if "node_modules" in path.parts:  # what npm has installed
+                continue
             if path.suffix in SUFFIXES and path.is_file():
                 yield path
 

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # install-deps.sh — installs the Debian 12 packages that Arris is built, tested and checked with, and Playwright-core
-# for the tests in a browser. Does nothing, and asks no server, when all of them are there. Works as root or through sudo.
+# for the tests in a browser. Does nothing, and asks no server, when all of them are there. As root or through sudo.
 set -euo pipefail
 
 packages=(
