@@ -1,6 +1,7 @@
 #include "edgepoint/depth_cells.h"
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cstdint>
 #include <functional>
@@ -20,6 +21,10 @@ constexpr std::uint32_t kFewPoints = 3;
 // An edge may lie deeper than the points that surround it by what a surface that is this steep gains over the width
 // of some pixels.
 constexpr float kPixelsDeep = 6;
+
+// Of four cells, two bits for the upper and two for the lower: upper, lower, left and right. If one half has no points,
+// nothing is known of what lies there, as where an object has moved away: edges may be its border.
+constexpr std::array<std::uint32_t, 4> kHalves{0b0011, 0b1100, 0b0101, 0b1010};
 
 }  // namespace
 
@@ -58,18 +63,25 @@ void DepthCells::fill_limits(int limit_row, float pixel_size) {
   Around* const row = around_.data() + std::size_t(limit_row) * std::size_t(columns_ + 1);
   for (int i = 0; i <= columns_; ++i) {
     Cell around{kInfinity, 0, 0};
+    std::uint32_t with_points = 0, in_picture = 0;  // bits: cells that have some
     for (int r = std::max(0, limit_row - 1); r <= std::min(rows_ - 1, limit_row); ++r) {
       for (int c = std::max(0, i - 1); c <= std::min(columns_ - 1, i); ++c) {
         const Cell& cell = cells_[std::size_t(r) * std::size_t(columns_) + std::size_t(c)];
         around.nearest = std::min(around.nearest, cell.nearest);
         around.farthest = std::max(around.farthest, cell.farthest);
         around.count += cell.count;
+        const std::uint32_t bit = 1U << unsigned(2 * (r - limit_row + 1) + c - i + 1);
+        in_picture |= bit;
+        if (cell.count > 0) with_points |= bit;
       }
     }
+    const bool surrounded = std::ranges::all_of(kHalves, [&](std::uint32_t half) {
+      return (in_picture & half) == 0 || (with_points & half) != 0;
+    });
     // Points spread over the window show all of its depths but for about one part in their number.
     const float spread =
         (around.farthest - around.nearest) * (2.0F / float(std::max(around.count, 1U)));
-    const float limit = around.count < kFewPoints
+    const float limit = around.count < kFewPoints || !surrounded
                             ? kInfinity
                             : around.farthest + spread + around.farthest * pixel_size * kPixelsDeep;
     row[i] = {around.nearest, limit};

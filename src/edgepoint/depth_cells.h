@@ -1,6 +1,7 @@
 // depth_cells.h — how far away an edge may be and still be seen
 // What       Edges behind the points around them are hidden. As points lie between edges and leave gaps, the depth
-//            that an edge is held against is the largest of the points around it, and more where points are few.
+//            that an edge is held against is the largest of the points around it, and more where points are few; where
+//            they lie on one side alone no edge is hidden.
 // Guarantee  none: an edge that is kept in error costs a neighbour, one that is lost lets colours bleed, so the
 //            depth is a generous one
 // Source     Bala, Walter, Greenberg (2003), §4.5, "Eliminating occluded edges": the largest depth of a 4 × 4

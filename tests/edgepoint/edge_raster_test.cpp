@@ -231,5 +231,28 @@ TEST(EdgeRaster, hidden_edges_leave_no_mark) {
   }
 }
 
+// Where an object has moved, nothing may be known yet of what it uncovered: its border is no less an edge.
+TEST(EdgeRaster, edges_with_points_on_one_side_alone_are_seen) {
+  constexpr int kBorder = 18;
+  std::vector<PointKey> points(std::size_t(kWidth) * kHeight);
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    if (i % kWidth >= kBorder)
+      points[i] = PointKey(std::bit_cast<std::uint32_t>(2.0F), std::uint32_t(i), 0);
+  }
+  DepthCells depth(kWidth, kHeight);
+  for (int i = 0; i < depth.cell_rows(); ++i) depth.fill_cells(points, i);
+  for (int i = 0; i < depth.limit_rows(); ++i) depth.fill_limits(i, 0.001F);
+  const ScreenEdge beside{kBorder - 1.5F, -1, 0.4F, kBorder - 1.5F, kHeight + 1, 0.4F};
+  const ScreenEdge behind{kBorder + 8.5F, 0, 0.4F, kBorder + 8.5F, kHeight, 0.4F};
+  for (const ScreenEdge& edge : {beside, behind}) {
+    Crossings crossings(kWidth, kHeight);
+    clear_crossings({0, kHeight}, kHeight, crossings);
+    rasterize_edges({&edge, 1}, depth, {0, kHeight}, kWidth, kHeight, crossings);
+    int count = 0;
+    for (int y = 0; y < kHeight; ++y) count += crossings.upper.row(y)[int(edge.x0)] != 0;
+    EXPECT_EQ(count, edge.x0 == beside.x0 ? kHeight : 0);
+  }
+}
+
 }  // namespace
 }  // namespace arris
