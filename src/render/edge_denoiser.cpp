@@ -68,7 +68,7 @@ class EdgePicture {
     const PixelView view{Vec3d(camera_.position),
                          inverse(Mat3d{camera_.step_x, camera_.step_y, camera_.corner}),
                          image_.width_px, image_.height_px};
-    const EdgeObjects objects(scene, settings.threads);
+    const EdgeObjects objects(scene, settings.threads, Creases::left_out);
     FoundEdges edges;
     objects.find_edges(scene, view, settings.threads, edges);
     ShadowFinder shadows;

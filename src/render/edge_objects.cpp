@@ -69,10 +69,15 @@ constexpr double kAround = 2;
 
 // Roundings of less than so many pixels' radius are seen as edges.
 constexpr double kSeenRadius = 0.75;
+// Roundings of less than so many pixels' width have an edge along their middle: points are further apart, and the border
+// between two faces would be as ragged as they lie.
+constexpr double kCreaseWidth = 2.5;
 
-RoundedView make_rounded_view(const PixelView& view) {
+RoundedView make_rounded_view(const PixelView& view, Creases creases) {
   const Vec3d forward = transpose(view.pixel_from_world).z;
-  return {view.eye, normalize(forward), kSeenRadius * double(pixel_size(view)) * length(forward)};
+  const double pixel = double(pixel_size(view)) * length(forward);
+  return {view.eye, normalize(forward), kSeenRadius * pixel,
+          creases == Creases::drawn ? kCreaseWidth * pixel : 0};
 }
 
 double world_radius(const RoundedGeometry& geometry) {
@@ -138,7 +143,8 @@ struct EdgeObjects::MeshEdges {
   }
 };
 
-EdgeObjects::EdgeObjects(const PreparedScene& prepared, int threads) {
+EdgeObjects::EdgeObjects(const PreparedScene& prepared, int threads, Creases creases)
+    : creases_(creases) {
   const Scene& scene = prepared.scene();
   objects_.resize(scene.objects.size());
   std::map<std::pair<std::uint32_t, bool>, std::vector<std::uint32_t>> users;
@@ -316,7 +322,7 @@ void EdgeObjects::find_shares(const Task& task, const PreparedScene& prepared,
   const bool from_outside = mesh.outward && !mesh.bounds_contain(eye);
   const DrawnQuery query{{eye, 1}, !from_outside, seen};
   const auto in_world = [&](Vec3f p) { return transform_point(world, Vec3d(p)); };
-  const RoundedView rounded_view = make_rounded_view(view);
+  const RoundedView rounded_view = make_rounded_view(view, creases_);
   const double radius =
       object.rounded.empty() ? 0 : world_radius(prepared.rounding().geometries[object.geometry]);
   for (std::uint32_t s = task.first_share; s < task.last_share; ++s) {
@@ -354,7 +360,7 @@ void EdgeObjects::find_edges(const PreparedScene& prepared, const PixelView& vie
       find_solid(task, prepared, view, threads, list);
     } else if (task.rounded_outline) {
       find_rounded_outline(prepared.rounding().geometries[objects_[task.object].geometry],
-                           make_rounded_view(view), list.edges);
+                           make_rounded_view(view, creases_), list.edges);
     } else {
       find_shares(task, prepared, view, list);
     }

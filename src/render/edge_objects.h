@@ -54,9 +54,13 @@ class FoundEdges {
   EdgeTotals totals_;
 };
 
+// Whether the middle of a narrow rounding is an edge: so that few points, which lie here and there, leave a straight
+// border between two faces. Where each pixel is known, it would but hide the rounding.
+enum class Creases : std::uint8_t { drawn, left_out };
+
 class EdgeObjects {
  public:
-  EdgeObjects(const PreparedScene& prepared, int threads);
+  EdgeObjects(const PreparedScene& prepared, int threads, Creases creases = Creases::drawn);
   ~EdgeObjects();
 
   // All edges of the picture, and few beside it. The scene is the one this was made of, or one whose objects, camera
@@ -125,6 +129,7 @@ class EdgeObjects {
 
   std::vector<ObjectEdges> objects_;
   std::vector<Task> tasks_;
+  Creases creases_;
 };
 
 }  // namespace arris

@@ -16,6 +16,8 @@ constexpr double kStep = radians(5);
 constexpr double kFarthest = 100;
 // Of n·n_face: rounding of float positions.
 constexpr double kSlack = 1e-5;
+// Of the turn between two faces: with less, they look smooth however narrow their rounding is.
+const double kSmooth = std::cos(radians(8));
 
 struct Angles {
   double from, to;
@@ -37,7 +39,9 @@ class Outline {
     const Vec3d eye = eye_ - center_;
     arc_is_crossed_.assign(solid.arc_count, false);
     for (std::uint32_t i = 0; i < solid.arc_count; ++i) {
-      arc_is_crossed_[i] = add_cylinder(data_.arcs[solid.first_arc + i], eye);
+      const Arc& arc = data_.arcs[solid.first_arc + i];
+      arc_is_crossed_[i] = add_cylinder(arc, eye);
+      if (view_.crease_at_depth > 0 && !arc.is_stub()) add_crease(arc, eye);
     }
     for (std::uint32_t i = 0; i < solid.node_count; ++i) {
       const Node& node = data_.nodes[solid.first_node + i];
@@ -93,6 +97,54 @@ class Outline {
       return plain - dot(normal, offset) / along;
     }
     return plain;
+  }
+
+  // The middle of a cylinder between two faces that are seen, as far as the middles of the corners that it ends at.
+  void add_crease(const Arc& arc, Vec3d eye) {
+    const Vec3d axis(arc.line.axis), p0(arc.line.p0), middle = p0 + axis * (0.5 * arc.line.length);
+    const Vec3d na = face_normal(arc.face_a), nb = face_normal(arc.face_b);
+    if (dot(na, nb) > kSmooth || !is_seen(middle, na, eye) || !is_seen(middle, nb, eye)) return;
+    const Vec3d offset = normalize(na + nb) * data_.radius;
+    const double t0 = end_of(arc, false, offset), t1 = end_of(arc, true, offset);
+    if (t0 >= t1) return;
+    const Vec3d a = p0 + axis * t0 + offset, b = p0 + axis * t1 + offset;
+    emit_crease(a, b, na - nb);
+    for (const bool last : {false, true}) {
+      const Node& node = data_.nodes[last ? arc.node1 : arc.node0];
+      if (node.kind != Node::Kind::sphere) continue;
+      const Vec3d to = middle_of(node);
+      if (is_seen(Vec3d(node.position), to, eye)) {
+        emit_crease(last ? b : a, Vec3d(node.position) + to * data_.radius, na - nb);
+      }
+    }
+  }
+
+  // across: between the normals on its two sides.
+  void emit_crease(Vec3d a, Vec3d b, Vec3d across) {
+    const Vec3d p = transform_point(world_, a + center_), q = transform_point(world_, b + center_);
+    const Vec3d middle = (p + q) * 0.5;
+    if (!is_seen_rounded(view_, world_radius_, middle)) return;
+    const Vec3d side = cross(q - p, middle - view_.eye);
+    const double size = length(side);
+    const double depth = dot(middle - view_.eye, view_.forward);
+    const double width = std::abs(dot(transform_vector(world_, across), side)) * data_.radius;
+    if (size > 0 && width < view_.crease_at_depth * depth * size) {
+      out_.push_back({{Vec3f(p), Vec3f(q)}});
+    }
+  }
+
+  [[nodiscard]] bool is_seen(Vec3d axis_point, Vec3d n, Vec3d eye) const {
+    return dot(n, eye - axis_point) > data_.radius;
+  }
+
+  // The mean of the normals of the faces that meet there.
+  [[nodiscard]] Vec3d middle_of(const Node& node) const {
+    Vec3d sum;
+    for (std::uint32_t i = 0; i < node.link_count; ++i) {
+      const Arc& arc = data_.arcs[data_.links[node.first_link + i]];
+      sum += face_normal(arc.face_a) + face_normal(arc.face_b);
+    }
+    return normalize(sum);
   }
 
   // True if an outline crosses the cylinder.

@@ -1,7 +1,8 @@
 // rounded_edges.h — the outline of rounded edges and corners
 // What       Seen from an eye, the outline of a rounded solid is not its mesh's edge but where the normal of a rounding
 //            cylinder or sphere is perpendicular to the view: on a cylinder straight lines along its axis, on a sphere
-//            arcs of a circle. The border between a face and its rounding is no discontinuity and gets no edge.
+//            arcs of a circle. The border between a face and its rounding is no discontinuity and gets no edge. But
+//            where both faces are seen and the rounding between them is narrow, its middle is an edge, the crease.
 // Guarantee  lines and arcs lie on the rounded surface of convex solids, and end where their cylinder or sphere ends
 //            (tests/render/rounded_shadow_test.cpp)
 // Limits     beside concave edges, and where roundings end in caps, a line may go on for up to a radius
@@ -23,10 +24,12 @@ namespace arris {
 // Where roundings are looked at from. Those of less than the least radius are too small to be seen as such.
 struct RoundedView {
   Vec3d eye;
-  Vec3d forward;           // unit; depth is measured along it
-  double radius_at_depth;  // the least radius at depth 1
+  Vec3d forward;               // unit; depth is measured along it
+  double radius_at_depth;      // the least radius at depth 1
+  double crease_at_depth = 0;  // the largest width of one that has a crease, at depth 1
 };
 
+// With the creases.
 void find_rounded_outline(const RoundedGeometry& geometry, const RoundedView& view,
                           std::vector<WorldEdge>& edges);
 

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -123,6 +124,54 @@ TEST(EdgeObjects, the_next_frame_uses_the_memory_of_the_one_before) {
   }
   EXPECT_EQ(found.totals().silhouette, totals.silhouette);
   EXPECT_EQ(found.totals().sharp, totals.sharp);
+}
+
+// The middles of a rounded box's edges between faces that are seen, from a distance at which they are so many pixels wide.
+std::size_t count_creases(double width_px, Creases creases) {
+  constexpr double kRadius = 0.1, kHalf = 0.5;
+  const Vec3d toward = normalize(Vec3d{1, 0.9, 0.8});
+  Scene scene;
+  scene.materials.emplace_back();
+  scene.meshes.push_back(make_box_mesh({2 * kHalf, 2 * kHalf, 2 * kHalf}));
+  Object object;
+  object.mesh = {0};
+  object.material = {0};
+  object.rounding.emplace();
+  object.rounding->method = RoundMethod::exact;
+  object.rounding->radius = kRadius;
+  scene.objects.push_back(object);
+  scene.image.width_px = scene.image.height_px = 100;
+  // Of the edge along z: the tangents at the two sides as seen.
+  const Vec3d across = Vec3d{1, -1, 0} * kRadius, side = normalize(Vec3d{-0.9, 1, 0});
+  constexpr double kFovDeg = 20;
+  const double pixel = 2 * std::tan(radians(kFovDeg / 2)) / 100;
+  const double distance = std::abs(dot(across, side)) / (width_px * pixel);
+  scene.camera = Camera{toward * distance, {}, {0, 0, 1}, kFovDeg};
+  const auto prepared = prepare_scene(std::move(scene));
+  const EdgeObjects objects(*prepared, 0, creases);
+  FoundEdges found;
+  objects.find_edges(*prepared, view_of(*prepared->scene().camera, prepared->scene().image), 0,
+                     found);
+  const double inner = kHalf - kRadius, outer = inner + kRadius * std::sqrt(0.5);
+  std::size_t count = 0;
+  for (const std::span<const WorldEdge> list : found.lists()) {
+    for (const WorldEdge& e : list) {
+      for (const std::array<double, 3> at :
+           {std::array{outer, outer, 0.0}, {outer, 0.0, outer}, {0.0, outer, outer}}) {
+        const Vec3d middle = (Vec3d(e.a) + Vec3d(e.b)) * 0.5;
+        const bool is_whole = std::abs(length(Vec3d(e.b) - Vec3d(e.a)) - 2 * inner) < 1e-5;
+        count += is_whole && length(middle - Vec3d{at[0], at[1], at[2]}) < 1e-5 ? 1 : 0;
+      }
+    }
+  }
+  return count;
+}
+
+TEST(EdgeObjects, narrow_roundings_between_two_seen_faces_have_an_edge) {
+  EXPECT_EQ(count_creases(1.5, Creases::drawn), 3U);
+  EXPECT_EQ(count_creases(2, Creases::drawn), 3U);
+  EXPECT_EQ(count_creases(3, Creases::drawn), 0U);
+  EXPECT_EQ(count_creases(1.5, Creases::left_out), 0U);
 }
 
 }  // namespace
