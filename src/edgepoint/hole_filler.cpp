@@ -5,11 +5,13 @@
 #include <bit>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
 #include "arris/math.h"
 #include "base/parallel_for.h"
+#include "edgepoint/antialias.h"
 #include "edgepoint/bit_plane.h"
 #include "edgepoint/shifted_word.h"
 
@@ -20,6 +22,11 @@ struct Cell {
   Rgb sum;
   float count = 0;
 };
+
+Rgb color_of(const Image& picture, int x, int y) {
+  const float* const color = picture.values.data() + picture.offset(x, y);
+  return {color[0], color[1], color[2]};
+}
 
 constexpr int kFirstCell = 8;  // pixels
 
@@ -61,8 +68,7 @@ class Grids {
     for (int y = y0; y < std::min(y0 + kFirstCell, picture_.height_px); ++y) {
       for (int x = x0; x < std::min(x0 + kFirstCell, picture_.width_px); ++x) {
         if (holes_.at(x, y)) continue;
-        const std::size_t at = picture_.offset(x, y);
-        cell.sum += Rgb{picture_.values[at], picture_.values[at + 1], picture_.values[at + 2]};
+        cell.sum += color_of(picture_, x, y);
         ++cell.count;
       }
     }
@@ -97,7 +103,8 @@ void set_color(Image& picture, std::uint32_t pixel, Rgb color) {
   out[2] = color.z;
 }
 
-// Pixels without a colour, and those whose colour others may take: not such as edges cross, which are mixtures.
+// Pixels without a colour, and those whose colour others may take: not such as edges cross, which are mixtures, unless
+// there are no others.
 struct HolePlanes {
   BitPlane holes, usable;
 };
@@ -155,8 +162,7 @@ class UsableTaps {
   [[nodiscard]] Rgb mean_of(const Image& picture, int x, int y) const {
     Cell cell;
     const auto add = [&](int px, int py) {
-      const float* const color = picture.values.data() + picture.offset(px, py);
-      cell.sum += Rgb{color[0], color[1], color[2]};
+      cell.sum += color_of(picture, px, py);
       ++cell.count;
     };
     const unsigned bit = unsigned(x) & 63U;
@@ -217,10 +223,9 @@ void spread_reached(const EdgePointImage& image, std::span<const HoleWord> words
     bool any = false;
     for (const std::vector<FilledHole>& part : filled) {
       for (const FilledHole& hole : part) {
-        const std::size_t at = image.offset(hole.x, hole.y);
-        set_color(picture, std::uint32_t(at), hole.color);
+        set_color(picture, std::uint32_t(image.offset(hole.x, hole.y)), hole.color);
         set_bit(planes.holes, hole.x, hole.y, false);
-        set_bit(planes.usable, hole.x, hole.y, image.codes[at].is_empty());
+        set_bit(planes.usable, hole.x, hole.y, true);
         any = true;
       }
     }
@@ -228,13 +233,97 @@ void spread_reached(const EdgePointImage& image, std::span<const HoleWord> words
   }
 }
 
+// All that have a colour and belong to a region: the narrow one between an outline and a shadow has pixels alone that
+// edges cross.
+void use_mixtures(const EdgePointImage& image, std::span<const HoleWord> words,
+                  HolePlanes& planes) {
+  const auto use_row = [&](int y, int word) {
+    const std::uint64_t in_region =
+        image.corners.primary[0].row(y)[word] | image.corners.secondary[0].row(y)[word];
+    planes.usable.row(y)[word] = in_region & ~planes.holes.row(y)[word];
+  };
+  for (const auto [y, word] : words) {
+    for (int row = std::max(0, y - 2); row <= std::min(image.height_px - 1, y + 2); ++row) {
+      for (int w = std::max(0, word - 1); w <= std::min(planes.usable.words() - 1, word + 1); ++w) {
+        use_row(row, w);
+      }
+    }
+  }
+}
+
+// Mixes the colours of a simple pixel's regions, where one of them was a hole.
+class EdgeMixer {
+ public:
+  struct Holes {
+    const BitPlane& before;
+    const BitPlane& not_of_region;  // those that did not take the colour of their primary region
+    const BitPlane& left;
+  };
+
+  EdgeMixer(const EdgePointImage& image, const Holes& holes, const Image& picture)
+      : image_(image), holes_(holes), picture_(picture) {}
+
+  // A hole that was filled, and its neighbours.
+  void add_around(int x, int y) {
+    if (is_simple(x, y) && !holes_.not_of_region.at(x, y)) {
+      mix(x, y, [&](int px, int py) { return !holes_.left.at(px, py); });
+    }
+    for (const PixelSide& side : kPixelSides) {
+      const int nx = x + side.dx, ny = y + side.dy;
+      if (nx < 0 || ny < 0 || nx >= image_.width_px || ny >= image_.height_px) continue;
+      if (holes_.before.at(nx, ny) || !is_simple(nx, ny)) continue;
+      const auto known = [&](int px, int py) { return !holes_.before.at(px, py); };
+      if (find_secondary_neighbor(image_, nx, ny, known)) continue;
+      mix(nx, ny, [&](int px, int py) { return px == x && py == y; });
+    }
+  }
+
+  void finish(Image& picture) const {
+    for (const FilledHole& pixel : mixed_) {
+      set_color(picture, std::uint32_t(image_.offset(pixel.x, pixel.y)), pixel.color);
+    }
+  }
+
+ private:
+  [[nodiscard]] bool is_simple(int x, int y) const {
+    return image_.codes[image_.offset(x, y)].is_simple();
+  }
+
+  template <class MayUse>
+  void mix(int x, int y, const MayUse& may_use) {
+    const std::optional<PixelPlace> other = find_secondary_neighbor(image_, x, y, may_use);
+    if (!other) return;
+    const float area = primary_area(image_.codes[image_.offset(x, y)]);
+    mixed_.push_back(
+        {x, y,
+         color_of(picture_, x, y) * area + color_of(picture_, other->x, other->y) * (1 - area)});
+  }
+
+  const EdgePointImage& image_;
+  Holes holes_;
+  const Image& picture_;
+  std::vector<FilledHole> mixed_;
+};
+
 }  // namespace
 
 void fill_holes(const EdgePointImage& image, std::span<const std::uint32_t> holes, int threads,
                 Image& picture) {
   if (holes.empty()) return;
   HolePlanes planes = make_planes(image, holes, threads);
-  spread_reached(image, words_of(image, holes), threads, planes, picture);
+  const BitPlane before = planes.holes;
+  const std::vector<HoleWord> words = words_of(image, holes);
+  spread_reached(image, words, threads, planes, picture);
+  const BitPlane not_of_region = planes.holes;
+  use_mixtures(image, words, planes);
+  spread_reached(image, words, threads, planes, picture);
+  EdgeMixer mixer(image, {before, not_of_region, planes.holes}, picture);
+  for (const std::uint32_t hole : holes) {
+    const int x = int(hole % std::uint32_t(picture.width_px));
+    const int y = int(hole / std::uint32_t(picture.width_px));
+    if (!planes.holes.at(x, y)) mixer.add_around(x, y);
+  }
+  mixer.finish(picture);
   Grids grids(picture, planes.holes);
   for (const std::uint32_t hole : holes) {
     const int pixel_x = int(hole % std::uint32_t(picture.width_px));

@@ -1,7 +1,9 @@
 // hole_filler.h — colours for pixels that no sample reaches
 // What       takes over the colours of pixels that no edge parts from a hole, step by step, so that what comes into
-//            view keeps its outline until its first samples; where there are none, the mean of the nearest pixels,
-//            found on ever coarser grids
+//            view keeps its outline until its first samples; then those of pixels that edges cross, along regions
+//            of less than a pixel's width, such as a contact's shadow; where there are none, the mean of the nearest
+//            pixels, found on ever coarser grids. Pixels that one edge crosses are mixed of their two regions' colours
+//            where one of these was filled.
 // Guarantee  colours cross no edge, but in regions in which nothing is known (tests/edgepoint/points_test.cpp)
 // Cost       nothing without holes; of the grids only what holes lie in
 #pragma once

@@ -562,10 +562,44 @@ TEST(HoleFiller, colours_cross_no_edge) {
   for (int y = 0; y < kHeight; ++y) {
     for (int x = 30; x <= 52; ++x) {
       EXPECT_EQ(picture.at(x, y, 2), 0);
-      if (x == 40) continue;  // the edge's own pixels
+      if (x == 40) {  // the edge's own pixels show both sides
+        EXPECT_NEAR(picture.at(x, y, 0), 0.5F, 0.1F) << y;
+        EXPECT_NEAR(picture.at(x, y, 1), 0.5F, 0.1F) << y;
+        continue;
+      }
       EXPECT_EQ(picture.at(x, y, 0), x < 40 ? 1 : 0) << x;
       EXPECT_EQ(picture.at(x, y, 1), x < 40 ? 0 : 1) << x;
     }
+  }
+}
+
+// Red, a green gap of about a pixel, blue: where nothing of the gap is known it goes on as it is known to be elsewhere.
+TEST(HoleFiller, narrow_gaps_between_two_edges_stay_whole) {
+  constexpr int kKnown = 6;  // rows
+  const std::vector<float> depths(std::size_t(kWidth) * kHeight, 0.0F);
+  const ScreenEdge left{40.2F, -1, 1, 40.2F, kHeight + 1, 1},
+      right{41.3F, -1, 1, 41.3F, kHeight + 1, 1};
+  const EdgePointImage image = image_of_depths(depths, {left, right});
+  Image picture(kWidth, kHeight, 3);
+  std::vector<std::uint32_t> holes;
+  const auto set = [&](int x, int y, Rgb color) {
+    for (int c = 0; c < 3; ++c) picture.at(x, y, c) = c == 0 ? color.x : c == 1 ? color.y : color.z;
+  };
+  for (int y = 0; y < kHeight; ++y) {
+    for (int x = 0; x < kWidth; ++x) set(x, y, x <= 40 ? Rgb{1, 0, 0} : Rgb{0, 0, 1});
+    if (y < kKnown) {
+      set(40, y, {0.2F, 0.8F, 0});
+      set(41, y, {0, 0.3F, 0.7F});
+    } else {
+      holes.push_back(std::uint32_t(image.offset(40, y)));
+    }
+  }
+  fill_holes(image, holes, 0, picture);
+  for (int y = kKnown; y < kKnown + 12; ++y) {
+    EXPECT_NEAR(picture.at(40, y, 0), 0.2F, 1e-3F) << y;
+    EXPECT_NEAR(picture.at(40, y, 1), 0.8F, 1e-3F) << y;
+    EXPECT_NEAR(picture.at(41, y, 1), 0.25F, 0.05F) << y;
+    EXPECT_NEAR(picture.at(41, y, 2), 0.7F, 0.05F) << y;
   }
 }
 
