@@ -1,6 +1,7 @@
 // antialias.h — the colour of a pixel that one edge crosses
 // What       the mean of the colours of its two regions, weighted by their areas. The secondary region takes the
-//            colour of a neighbour on its side: the one with which it shares most of a side whose primary region it touches.
+//            colour of a neighbour on its side: the one with which it shares most of a side whose primary region it
+//            touches.
 // Source     Bala, Walter, Greenberg (2003), §5.3 "Anti-aliasing". The paper's table knows the edge alone; here the
 //            neighbour must also be reached from the secondary region without crossing an edge.
 #pragma once

@@ -2,7 +2,10 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
+#include <cstdint>
+#include <limits>
 #include <optional>
 #include <span>
 #include <utility>
@@ -257,6 +260,7 @@ class Denoiser {
     RegionPlanes planes(width, height);
     std::vector<Regions> regions(light.size());
     std::vector<Residue> residues(light.size());
+    std::vector<std::uint8_t> is_alone(light.size());
     for (std::size_t i = 0; i < light.size(); ++i) {
       const Rgb color = light[i].known ? light[i].color * albedos_[i] : color_at(noisy_, i);
       planes.set(i, color, light[i].known && !image().codes[i].is_complex());
@@ -268,17 +272,77 @@ class Denoiser {
           const PrimaryNeighborhood rows{planes.row(y - 1), planes.row(y), planes.row(y + 1)};
           for (int x = 0; x < width; ++x) {
             const std::size_t at = image().offset(x, y);
-            if (!image().codes[at].is_simple() || !light[at].known) continue;
+            if (image().codes[at].is_empty()) continue;
+            is_alone[at] = image().codes[at].is_complex() || !light[at].known ? 1 : 0;
+            if (is_alone[at] != 0) continue;
             if (const auto other = find_secondary_color(image(), x, y, rows)) {
               regions[at].secondary = *other;
               residues[at] = find_residue(at, regions[at]);
             } else {
-              regions[at].primary = regions[at].secondary = color_at(noisy_, at);
+              is_alone[at] = 1;
             }
           }
         });
+    parallel_for(std::size_t(height), {.grain = 8, .threads = settings_.threads},
+                 [&](std::size_t row) {
+                   for (int x = 0; x < width; ++x) {
+                     const std::size_t at = image().offset(x, int(row));
+                     if (is_alone[at] == 0) continue;
+                     const Rgb color = mean_along_edge(is_alone, x, int(row));
+                     regions[at] = {color, color};
+                   }
+                 });
     add_residues(regions, residues);
     return regions;
+  }
+
+  // Of a pixel with a region of which nothing is known, such as a gap of less than a pixel between an outline and a
+  // shadow, or with several edges: its own mean, and those of others alike that are crossed likewise.
+  [[nodiscard]] Rgb mean_along_edge(std::span<const std::uint8_t> is_alone, int x, int y) const {
+    constexpr int kAround = 3;
+    const auto noise_at = [&](std::size_t at) {
+      const Rgb v = variance_at(at);
+      return v.x + v.y + v.z;
+    };
+    const auto crossings_of = [&](int px, int py) {
+      return boundary_mask(image().crossings.of_pixel(px, py));
+    };
+    const std::uint32_t own_crossings = crossings_of(x, y);
+    const auto for_likewise = [&](const auto& call) {
+      for (int py = std::max(0, y - kAround); py <= std::min(noisy_.height_px - 1, y + kAround);
+           ++py) {
+        for (int px = std::max(0, x - kAround); px <= std::min(noisy_.width_px - 1, x + kAround);
+             ++px) {
+          const std::size_t at = image().offset(px, py);
+          if (is_alone[at] != 0 && is_crossed_likewise(crossings_of(px, py), own_crossings)) {
+            call(at);
+          }
+        }
+      }
+    };
+    float count = 0, noise = std::numeric_limits<float>::min();
+    for_likewise([&](std::size_t at) {
+      noise += noise_at(at);
+      ++count;
+    });
+    const Rgb own = color_at(noisy_, image().offset(x, y));
+    Rgb sum;
+    float weights = 0;
+    for_likewise([&](std::size_t at) {
+      const Rgb color = color_at(noisy_, at), d = color - own;
+      const float w = std::exp(-dot(d, d) * count / (kResiduesApart2 * noise));
+      sum += color * w;
+      weights += w;
+    });
+    return sum * (1 / weights);
+  }
+
+  // By edges that cross its boundary where those of the other do, or an eighth beside.
+  [[nodiscard]] static bool is_crossed_likewise(std::uint32_t a, std::uint32_t b) {
+    const auto wide = [](std::uint32_t mask) {
+      return mask | std::rotl(mask, 1) | std::rotr(mask, 1);
+    };
+    return (a & ~wide(b)) == 0 && (b & ~wide(a)) == 0;
   }
 
   [[nodiscard]] Residue find_residue(std::size_t pixel, const Regions& regions) const {

@@ -5,8 +5,9 @@
 // In         a picture whose pixels are squares (ImageSettings::Filter::box), with layer "squares"
 // Guarantee  the same picture at any number of threads; tends to the path traced one as its noise falls
 // Limits     reflections, refractions, caustics and shadows of area lights have no edges: they are kept where they
-//            stand out of the noise. Pixels with several edges keep their noise. Of more than a million shadow events
-//            the rest is left out: shadows blur there.
+//            stand out of the noise. Pixels with several edges, and such with a region of which nothing is known, are
+//            averaged with those within three pixels alone that are crossed likewise. Of more than a million shadow
+//            events the rest is left out: shadows blur there.
 // Source     reachability of Bala, Walter, Greenberg (2003), §5.2, as the stop that others approximate by depth and
 //            normals: Schied et al., "Spatiotemporal Variance-Guided Filtering", HPG 2017
 #pragma once

@@ -69,8 +69,8 @@ constexpr double kAround = 2;
 
 // Roundings of less than so many pixels' radius are seen as edges.
 constexpr double kSeenRadius = 0.75;
-// Roundings of less than so many pixels' width have an edge along their middle: points are further apart, and the border
-// between two faces would be as ragged as they lie.
+// Roundings of less than so many pixels' width have an edge along their middle: points are further apart, and the
+// border between two faces would be as ragged as they lie.
 constexpr double kCreaseWidth = 2.5;
 
 RoundedView make_rounded_view(const PixelView& view, Creases creases) {

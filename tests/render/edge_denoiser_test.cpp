@@ -124,5 +124,37 @@ TEST(EdgeDenoiser, leaves_outlines_where_they_are) {
   EXPECT_LT(rmse(render_denoised(scene, 16), plain), 0.02);
 }
 
+// A rounded box stands on a floor: between its outline and its shadow's the floor shows in less than a pixel.
+TEST(EdgeDenoiser, gaps_of_less_than_a_pixel_are_averaged_along_them) {
+  Camera camera;
+  camera.position = {0, -6, 3};
+  camera.target = {0, -0.5, 0};
+  camera.fov_deg = 24;
+  Scene scene = make_empty_scene(camera);
+  scene.image.width_px = scene.image.height_px = 64;
+  scene.image.max_depth = 3;
+  scene.environment = ConstantEnvironment{Rgb(0.3F)};
+  add_object(scene, make_square_mesh(6), make_lambert(0.8F));
+  Object& box = add_object(scene, make_box_mesh({0.7, 0.5, 0.5}), make_lambert(0.6F),
+                           translation({0, 0, 0.5}));
+  box.rounding.emplace();
+  box.rounding->method = RoundMethod::exact;
+  box.rounding->radius = 0.22;
+  scene.lights.emplace_back(PointLight{{-1, -3, 4}, Rgb(30)});
+  const auto contact = [](const Image& picture) {
+    Image rows(20, 2, 3);
+    for (int y = 0; y < rows.height_px; ++y) {
+      for (int x = 0; x < rows.width_px; ++x) {
+        for (int c = 0; c < 3; ++c) rows.at(x, y, c) = picture.at(22 + x, 30 + y, c);
+      }
+    }
+    return rows;
+  };
+  const Image reference = contact(render_plain(scene, 256, 1));
+  const double noisy = rmse(contact(render_plain(scene, 4, 0)), reference);
+  const double denoised = rmse(contact(render_denoised(scene, 4)), reference);
+  EXPECT_LT(denoised, 0.75 * noisy) << denoised << " and " << noisy;
+}
+
 }  // namespace
 }  // namespace arris::test

@@ -126,7 +126,8 @@ TEST(EdgeObjects, the_next_frame_uses_the_memory_of_the_one_before) {
   EXPECT_EQ(found.totals().sharp, totals.sharp);
 }
 
-// The middles of a rounded box's edges between faces that are seen, from a distance at which they are so many pixels wide.
+// The middles of a rounded box's edges between faces that are seen, from a distance at which they are so many pixels
+// wide.
 std::size_t count_creases(double width_px, Creases creases) {
   constexpr double kRadius = 0.1, kHalf = 0.5;
   const Vec3d toward = normalize(Vec3d{1, 0.9, 0.8});
