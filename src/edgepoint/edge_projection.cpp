@@ -103,11 +103,13 @@ void project_list(const PixelView& view, std::span<const WorldEdge> edges,
 // False if an edge crosses none of the lines, or is hidden wherever it does.
 bool may_be_seen(const ScreenEdge& e, const DepthCells& depth) {
   const auto half = [](float v) { return std::floor(2 * v); };
-  const bool crosses = (half(e.x0) != half(e.x1)) | (half(e.y0) != half(e.y1));
+  // Neither can be guessed: no branches.
+  const unsigned crosses = unsigned(half(e.x0) != half(e.x1)) | unsigned(half(e.y0) != half(e.y1));
   // More than what is added by rounding, where inverse depths are interpolated.
   constexpr float kAbove = 1.00001F;
   const float nearest = std::max(e.inverse_depth0, e.inverse_depth1) * kAbove;
-  return crosses & !(nearest * depth.limit_around({e.x0, e.y0}, {e.x1, e.y1}) < 1);
+  const bool hidden = nearest * depth.limit_around({e.x0, e.y0}, {e.x1, e.y1}) < 1;
+  return (crosses & unsigned(!hidden)) != 0;
 }
 
 // is_kept(i): whether the i-th is. That can't be guessed, so there is no branch: each is written where the last one was
