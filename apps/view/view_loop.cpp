@@ -245,12 +245,13 @@ void ViewRenderer::Loop::leave(ClientId client) {
 }
 
 void ViewRenderer::Loop::send(const char* type, std::string text, std::optional<ClientId> to,
-                              std::optional<ClientId> but_not) {
+                              std::optional<ClientId> but_not) const {
   outputs_.send_text({type, std::move(text), to, but_not});
 }
 
 // To each client that has sent one of them, with the newest seq of its own.
-void ViewRenderer::Loop::send_errors(const std::vector<InputMark>& marks, const std::string& what) {
+void ViewRenderer::Loop::send_errors(const std::vector<InputMark>& marks,
+                                     const std::string& what) const {
   if (marks.empty()) return send("error", error_message({}, what));
   for (const InputMark& mark : marks) send("error", error_message(mark.seq, what), mark.client);
 }

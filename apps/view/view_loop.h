@@ -84,9 +84,9 @@ class ViewRenderer::Loop {
   void send_state(bool now);
   void send_scene();
   void send_scene_soon(std::optional<ClientId> but_not);
-  void send_errors(const std::vector<InputMark>& marks, const std::string& what);
+  void send_errors(const std::vector<InputMark>& marks, const std::string& what) const;
   void send(const char* type, std::string text, std::optional<ClientId> to = {},
-            std::optional<ClientId> but_not = {});
+            std::optional<ClientId> but_not = {}) const;
   void set_busy(const std::string& what);
   [[nodiscard]] BuildSettings build_settings() const;
 

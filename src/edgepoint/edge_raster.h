@@ -49,7 +49,7 @@ ScreenEdge project_edge(const PixelView& view, const WorldEdge& edge);
 
 // False where a shadow's edge does not matter: the penumbra is so wide in the picture that light changes little from
 // pixel to pixel, or so narrow that its outer edge stands for both.
-bool penumbra_matters(const PixelView& view, const SoftEdge& edge, const ScreenEdge& projected);
+bool penumbra_matters(const PixelView& view, const SoftEdge& edge, const ScreenEdge& e);
 
 // Of no length also where the edge does not matter.
 ScreenEdge project_edge(const PixelView& view, const SoftEdge& edge);

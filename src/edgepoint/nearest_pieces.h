@@ -24,6 +24,8 @@ struct EventSegment {
   double k0 = 0, k1 = 0;
   std::uint32_t receiver = 0, face = 0;
 
+  // What the compiler makes of it compares with 0.
+  // NOLINTNEXTLINE(modernize-use-nullptr)
   friend auto operator<=>(const EventSegment&, const EventSegment&) = default;
   [[nodiscard]] double nearness(double s) const {
     return s <= s0 ? k0 : s >= s1 ? k1 : k0 + (k1 - k0) * ((s - s0) / (s1 - s0));

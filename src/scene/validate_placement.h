@@ -14,6 +14,6 @@ enum class NumberedFrom { zero, one };
 // What is wrong with camera, transforms and lights, one line each; meshes are not looked at, nor how far they reach.
 // Precondition: the scene was valid before these were changed.
 std::vector<std::string> validate_placement(const Scene& scene,
-                                            NumberedFrom first = NumberedFrom::zero);
+                                            NumberedFrom numbered = NumberedFrom::zero);
 
 }  // namespace arris
