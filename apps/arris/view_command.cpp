@@ -1,6 +1,5 @@
 #include <fmt/format.h>
 #include <spawn.h>
-#include <sys/wait.h>
 
 #include <cstdio>
 #include <cstdlib>
@@ -70,9 +69,10 @@ view::ViewModel make_model(Input loaded, const std::filesystem::path& file,
 }
 
 view::ViewModel open_model(const std::filesystem::path& file, const std::string& name,
-                           const Arguments& arguments) {
-  view::ViewModel model =
-      make_model(load_input(file.string(), load_options_of(arguments)), file, arguments);
+                           bool is_foreign, const Arguments& arguments) {
+  LoadOptions options = load_options_of(arguments);
+  if (is_foreign) options.other_files = LoadOptions::OtherFiles::none;
+  view::ViewModel model = make_model(load_input(file.string(), options), file, arguments);
   model.name = name;
   return model;
 }
@@ -89,13 +89,17 @@ bool has_desktop() {
 void open_browser(const std::string& address) {
   std::string program = "xdg-open", argument = address;
   char* words[] = {program.data(), argument.data(), nullptr};
+  posix_spawnattr_t attributes;
+  posix_spawnattr_init(&attributes);
+  posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETSID);  // Ctrl-C is not meant for it
   posix_spawn_file_actions_t actions;
   posix_spawn_file_actions_init(&actions);
   for (const int stream : {0, 1, 2}) {
     posix_spawn_file_actions_addopen(&actions, stream, "/dev/null", stream == 0 ? 0 : 1, 0);
   }
   pid_t child = 0;
-  posix_spawnp(&child, program.c_str(), &actions, nullptr, words, environ);
+  posix_spawnp(&child, program.c_str(), &actions, &attributes, words, environ);
+  posix_spawnattr_destroy(&attributes);
   posix_spawn_file_actions_destroy(&actions);
 }
 
@@ -111,21 +115,23 @@ int run_view(const Arguments& arguments) {
   if (const auto given = find_given(arguments, "--trace-below")) {
     renderer_settings.trace_below_ms = parse_real(*given, {0, 1e9});
   }
-  renderer_settings.open = [&arguments](const std::filesystem::path& file,
-                                        const std::string& name) {
-    return open_model(file, name, arguments);
+  renderer_settings.open = [&arguments](const std::filesystem::path& file, const std::string& name,
+                                        bool is_foreign) {
+    return open_model(file, name, is_foreign, arguments);
   };
   with_rounding_options({}, arguments);  // checked before a long file is read
 
   Console console(arguments);
-  view::ViewModel model = make_model(load_input(input, load_options_of(arguments)),
-                                     input == "-" ? "" : input, arguments);
+  view::ViewModel model =
+      make_model(load_input(input, load_options_of(arguments)),
+                 input == "-" ? "" : std::filesystem::absolute(input), arguments);
   for (const std::string& note : model.scene.notes) console.report(note);
   view::ViewServer server(std::move(model), std::move(renderer_settings),
                           std::move(server_settings));
   fmt::print("{}\n", server.address());
   if (std::fflush(stdout) != 0) throw Error(Error::Kind::failed, "stdout", "can't be written");
   console.report("open this address in a browser; Ctrl-C ends it");
+  if (server.is_open_to_all()) console.report("all that can reach this machine can reach it");
   if (!arguments.has("--no-browser") && has_desktop()) open_browser(server.address());
   server.run();
   return 0;

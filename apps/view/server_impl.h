@@ -42,6 +42,7 @@ class ViewServer::Impl {
   ~Impl();
 
   [[nodiscard]] std::string address() const;
+  [[nodiscard]] bool is_open_to_all() const;
   void run();
   void stop();
 

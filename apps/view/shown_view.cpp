@@ -98,7 +98,7 @@ std::unique_ptr<EdgePointEngine> make_engine(const ViewModel& model, const Scene
   constexpr auto kShading = std::chrono::milliseconds(25);
   for (int frame = 0; frame < kMostFrames; ++frame) {
     engine->next_frame();
-    if (shows_enough(engine->stats())) break;
+    if (shows_enough(engine->stats()) || (settings.stop != nullptr && *settings.stop)) break;
     std::this_thread::sleep_for(kShading);
   }
   return engine;

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 #include <exception>
+#include <string>
 #include <utility>
 
 #include "arris/error.h"
@@ -24,6 +25,14 @@ bool has_places(const PreparedScene& prepared, const StagedView& staged, const V
     }
   }
   return true;
+}
+
+void replace_all(std::string& text, const std::string& what, const std::string& by) {
+  if (what.empty()) return;
+  for (std::size_t at = text.find(what); at != std::string::npos;
+       at = text.find(what, at + by.size())) {
+    text.replace(at, what.size(), by);
+  }
 }
 
 bool shows(const PreparedScene& prepared, const StagedView& staged, const ViewEdits& edits) {
@@ -145,7 +154,7 @@ void ViewRenderer::Loop::start_open() {
       [open = settings_.open, file = request.file, name = request.name,
        before = request.keeps_edits ? view_.model : nullptr, edits = desired_,
        settings = build_settings()] {
-        ViewModel opened = open(file, name);
+        ViewModel opened = open(file, name, before == nullptr);
         if (!before) opened.file.clear();
         auto model = std::make_shared<const ViewModel>(std::move(opened));
         ViewEdits now = first_edits(*model);
@@ -164,6 +173,9 @@ void ViewRenderer::Loop::finish_build() {
     take_view(std::move(*view));
   } catch (const std::exception& problem) {
     error = problem.what();
+    if (opening_ && !opening_->keeps_edits) {
+      replace_all(error, opening_->file.string(), opening_->name);
+    }
     if (!opening_) {
       // The camera is not what could not be prepared.
       const Camera camera = desired_.camera;
@@ -185,7 +197,9 @@ void ViewRenderer::Loop::finish_build() {
 }
 
 void ViewRenderer::Loop::take_view(ShownView view) {
-  if (opening_) {
+  if (opening_ && opening_->keeps_edits) {
+    desired_ = carry_over(built_, desired_, view.edits);
+  } else if (opening_) {
     // Nothing that was asked of the model before has a meaning for this one.
     const PictureSize size = desired_.size;
     desired_ = view.edits;
@@ -216,7 +230,7 @@ void ViewRenderer::Loop::make_frame() {
   const bool moving = pace_.is_moving(begin);
   try {
     make_pictures();
-  } catch (const Error& error) {
+  } catch (const std::exception& error) {
     undo_asked(error.what());
     pace_.note_frame(begin, Clock::now(), false);
     return;

@@ -92,24 +92,32 @@ void ViewRenderer::Loop::set_next_send(std::optional<Clock::time_point> time) {
 
 void ViewRenderer::Loop::run() {
   while (!stopped_) {
-    wait();
-    std::deque<std::function<void()>> tasks;
-    std::optional<Clock::time_point> send;
-    {
-      const std::lock_guard lock(mutex_);
-      tasks.swap(tasks_);
-      woken_ = false;
-      send = next_send_;
+    try {
+      step();
+    } catch (const std::exception& error) {  // out of memory, say: what is shown stays
+      send("error", error_message({}, error.what()));
     }
-    for (const auto& task : tasks) task();
-    tasks.clear();
-    take_inputs();
-    finish_build();
-    follow_edits();
-    poll_beam();
-    if (wants_frame() && Clock::now() >= frame_due(send)) make_frame();
-    if (scene_dirty_ && Clock::now() >= scene_sent_ + kSceneInterval) send_scene();
   }
+}
+
+void ViewRenderer::Loop::step() {
+  wait();
+  std::deque<std::function<void()>> tasks;
+  std::optional<Clock::time_point> send;
+  {
+    const std::lock_guard lock(mutex_);
+    tasks.swap(tasks_);
+    woken_ = false;
+    send = next_send_;
+  }
+  for (const auto& task : tasks) task();
+  tasks.clear();
+  take_inputs();
+  finish_build();
+  follow_edits();
+  poll_beam();
+  if (wants_frame() && Clock::now() >= frame_due(send)) make_frame();
+  if (scene_dirty_ && Clock::now() >= scene_sent_ + kSceneInterval) send_scene();
 }
 
 bool ViewRenderer::Loop::wants_frame() const {
@@ -149,7 +157,7 @@ void ViewRenderer::Loop::take_inputs() {
   for (const Input& input : inputs) {
     try {
       apply(input);
-    } catch (const Error& error) {
+    } catch (const std::exception& error) {
       add_marks(shown_, input.marks);
       send("error",
            error_message(input.marks.empty() ? std::nullopt : std::optional(input.marks.back().seq),
@@ -291,17 +299,23 @@ void ViewRenderer::Loop::send_state(bool now) {
 // Files to save, and models to open.
 
 void ViewRenderer::Loop::save_picture(const std::function<void(std::vector<std::uint8_t>)>& done) {
-  if (picture_ == nullptr) make_pictures();
-  SaveOptions options;
-  options.exposure = view_.model->scene.image.exposure;
-  done(encode_picture({*picture_, {}}, PictureFormat::png, options));
+  std::vector<std::uint8_t> png;
+  try {
+    if (picture_ == nullptr) make_pictures();
+    SaveOptions options;
+    options.exposure = view_.model->scene.image.exposure;
+    png = encode_picture({*picture_, {}}, PictureFormat::png, options);
+  } catch (const std::exception& error) {
+    send("error", error_message({}, error.what()));
+  }
+  done(std::move(png));
 }
 
 void ViewRenderer::Loop::save_scene(const SceneSaved& done) {
   std::string text;
   try {
     text = make_scene_file(*view_.model, desired_);
-  } catch (const Error& error) {
+  } catch (const std::exception& error) {
     return done({}, error.what());
   }
   done(std::move(text), "");

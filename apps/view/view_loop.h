@@ -68,6 +68,7 @@ class ViewRenderer::Loop {
   void follow_edits();
   void start_build();
   void start_open();
+  void step();
   void finish_build();
   void take_view(ShownView view);
   void tell_engines();

@@ -42,8 +42,9 @@ struct ViewOutputs {
   std::function<void(ViewText)> send_text;
 };
 
-using OpenModel =
-    std::function<ViewModel(const std::filesystem::path& file, const std::string& name)>;
+// is_foreign: a client's, which may name no other files.
+using OpenModel = std::function<ViewModel(const std::filesystem::path& file,
+                                          const std::string& name, bool is_foreign)>;
 
 // A scene file, or why there is none.
 using SceneSaved = std::function<void(std::string toml, const std::string& error)>;

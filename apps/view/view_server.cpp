@@ -1,5 +1,6 @@
 #include "view/view_server.h"
 
+#include <fcntl.h>
 #include <fmt/format.h>
 #include <stdlib.h>  // mkdtemp
 
@@ -30,9 +31,10 @@ tcp::endpoint find_endpoint(const ServerSettings& settings, asio::io_context& co
   const auto address = asio::ip::make_address(settings.host, error);
   if (!error) return {address, settings.port};
   tcp::resolver resolver(context);
-  const auto found =
-      resolver.resolve(settings.host, std::to_string(settings.port), tcp::resolver::passive, error);
-  if (error || found.empty()) {
+  const auto found = resolver.resolve(settings.host, std::to_string(settings.port), error);
+  // An empty name, or one such as "0", would open the server to all without saying so.
+  if (settings.host.empty() || settings.host == "*" || error || found.empty() ||
+      found.begin()->endpoint().address().is_unspecified()) {
     throw Error(Error::Kind::input, "--host",
                 fmt::format("\"{}\" is no address of this machine; use 127.0.0.1 for this machine "
                             "alone, 0.0.0.0 for all that can reach it",
@@ -68,6 +70,8 @@ void ViewServer::Impl::listen() {
   const auto bind = [&] {
     acceptor_.close(error);
     acceptor_.open(endpoint.protocol(), error);
+    // Programs that are started must not hold it.
+    if (!error) ::fcntl(acceptor_.native_handle(), F_SETFD, FD_CLOEXEC);
     if (!error) acceptor_.set_option(asio::socket_base::reuse_address(true), error);
     if (!error) acceptor_.bind(endpoint, error);
     if (!error) acceptor_.listen(asio::socket_base::max_listen_connections, error);
@@ -89,6 +93,10 @@ std::string ViewServer::Impl::address() const {
   if (endpoint.address().is_unspecified()) host = endpoint.address().is_v6() ? "::1" : "127.0.0.1";
   if (host.find(':') != std::string::npos) host = "[" + host + "]";
   return fmt::format("http://{}:{}/?t={}", host, endpoint.port(), token_);
+}
+
+bool ViewServer::Impl::is_open_to_all() const {
+  return acceptor_.local_endpoint().address().is_unspecified();
 }
 
 void ViewServer::Impl::run() {
@@ -120,8 +128,12 @@ void ViewServer::Impl::stop() {
 void ViewServer::Impl::wait_for_signal() {
   signals_.add(SIGINT);
   signals_.add(SIGTERM);
+  signals_.add(SIGHUP);
   signals_.async_wait([this](error_code error, int) {
-    if (!error) close_all();
+    if (error) return;
+    error_code ignored;
+    signals_.clear(ignored);  // a second one ends the program
+    close_all();
   });
 }
 
@@ -227,6 +239,9 @@ ViewServer::~ViewServer() = default;
 
 std::string ViewServer::address() const {
   return impl_->address();
+}
+bool ViewServer::is_open_to_all() const {
+  return impl_->is_open_to_all();
 }
 void ViewServer::run() {
   impl_->run();

@@ -33,6 +33,8 @@ class ViewServer {
 
   // With the token.
   [[nodiscard]] std::string address() const;
+  // Whether it listens on every address of this machine.
+  [[nodiscard]] bool is_open_to_all() const;
   // Until SIGINT, SIGTERM, stop(), or the last client leaves.
   void run();
   void stop();  // from any thread

@@ -19,6 +19,9 @@ struct LoadOptions {
   // Round things of OpenSCAD files. exact: true spheres, cylinders and circles, but for those with a small
   // explicit $fn, such as a hexagon; as_written: with OpenSCAD's facets.
   enum class Facets { exact, as_written } facets = Facets::exact;
+  // What OBJ and OpenSCAD files name: material libraries, pictures, models. beside: found from where the file is, and
+  // OpenSCAD may be run; none: nothing else is read or run, for files of strangers. glTF never leaves its folder.
+  enum class OtherFiles { beside, none } other_files = OtherFiles::beside;
 };
 
 // By extension: .stl .obj .ply .off .gltf .glb .csg .scad .toml. Throws Error.

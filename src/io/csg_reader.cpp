@@ -96,6 +96,14 @@ CsgFiles csg_files_beside(const std::filesystem::path& file) {
   return files;
 }
 
+CsgFiles no_csg_files() {
+  CsgFiles files;
+  files.make_mesh = [](const std::string&) {
+    return "other files and programs may not be used here";
+  };
+  return files;
+}
+
 Scene read_csg(std::span<const std::uint8_t> bytes, const std::string& file, const CsgFiles& files,
                const LoadOptions& options) {
   const ScadNode root = parse_csg(bytes, file);

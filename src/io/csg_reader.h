@@ -20,6 +20,8 @@ inline constexpr std::size_t kMaxCsgObjects = 256;
 
 // An installed openscad, and models in the folder of the file.
 CsgFiles csg_files_beside(const std::filesystem::path& file);
+// Neither.
+CsgFiles no_csg_files();
 
 Scene read_csg(std::span<const std::uint8_t> bytes, const std::string& file, const CsgFiles& files,
                const LoadOptions& options = {});

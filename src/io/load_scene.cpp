@@ -28,7 +28,17 @@ struct SceneFile {
   const LoadOptions& options;
   std::string name;  // the path as text, for errors
   std::span<const std::uint8_t> bytes;
+
+  [[nodiscard]] bool is_alone() const {
+    return options.other_files == LoadOptions::OtherFiles::none;
+  }
 };
+
+// Of formats that are nothing without other files.
+void refuse_alone(const SceneFile& file) {
+  if (!file.is_alone()) return;
+  throw Error(Error::Kind::input, file.name, "needs other files, which may not be read here");
+}
 
 struct Format {
   std::string_view extension;
@@ -42,7 +52,10 @@ struct Format {
 constexpr Format kFormats[] = {
     {".stl", "STL", [](const SceneFile& f) { return read_stl(f.bytes, f.name); }, looks_like_stl},
     {".obj", "OBJ",
-     [](const SceneFile& f) { return read_obj(f.bytes, f.name, files_beside(f.path)); }, nullptr},
+     [](const SceneFile& f) {
+       return read_obj(f.bytes, f.name, f.is_alone() ? ObjFiles() : files_beside(f.path));
+     },
+     nullptr},
     {".ply", "PLY", [](const SceneFile& f) { return read_ply(f.bytes, f.name); }, looks_like_ply},
     {".off", "OFF", [](const SceneFile& f) { return read_off(f.bytes, f.name); }, looks_like_off},
     {".glb", "GLB",
@@ -51,12 +64,19 @@ constexpr Format kFormats[] = {
      [](const SceneFile& f) { return read_gltf(f.bytes, f.name, f.path.parent_path()); }, nullptr},
     {".csg", "CSG",
      [](const SceneFile& f) {
-       return read_csg(f.bytes, f.name, csg_files_beside(f.path), f.options);
+       return read_csg(f.bytes, f.name, f.is_alone() ? no_csg_files() : csg_files_beside(f.path),
+                       f.options);
      },
      nullptr},
-    {".scad", "OpenSCAD", [](const SceneFile& f) { return read_scad(f.path, f.options); }, nullptr},
+    {".scad", "OpenSCAD",
+     [](const SceneFile& f) {
+       refuse_alone(f);
+       return read_scad(f.path, f.options);
+     },
+     nullptr},
     {".toml", "TOML",
      [](const SceneFile& f) {
+       refuse_alone(f);
        const std::string_view text(reinterpret_cast<const char*>(f.bytes.data()), f.bytes.size());
        return read_toml_scene(text, f.name, f.path.parent_path(),
                               [&](const fs::path& path) { return load_scene(path, f.options); });

@@ -31,7 +31,8 @@ Scene read_off(std::span<const std::uint8_t> bytes, const std::string& file);
 bool looks_like_off(std::span<const std::uint8_t> bytes);
 
 // How the OBJ reader reaches the files that a model names, relative to the model; each returns nothing
-// where there is no such file and throws Error where it can't be read.
+// where there is no such file and throws Error where it can't be read. Both null: no other file may be read, and
+// models have no materials but their names.
 struct ObjFiles {
   std::function<std::optional<std::vector<std::uint8_t>>(const std::string& name)> find_library;
   std::function<std::optional<Texture>(const std::string& name)> find_texture;

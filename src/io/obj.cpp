@@ -287,6 +287,11 @@ class ObjReader {
     const std::string line(text_.rest_of_line());
     text_.skip_line();
     if (line.empty()) throw text_.error("\"mtllib\" names no file");
+    if (!files_.find_library) {
+      scene_.notes.push_back("the material library " + in_quotes(line) +
+                             " is left out: other files may not be read here");
+      return;
+    }
     has_library_ = true;
     if (read_library(line)) return;
     TextScanner names({reinterpret_cast<const std::uint8_t*>(line.data()), line.size()}, file_);

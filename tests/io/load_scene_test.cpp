@@ -89,6 +89,32 @@ TEST_F(LoadScene, finds_the_libraries_and_pictures_beside_a_model) {
   EXPECT_THAT(message_of(write("d.obj", "mtllib pictures.mtl\n" + kObj)), HasSubstr("bad.png"));
 }
 
+// What the files name exists: it is not looked at, and nothing of it is told.
+TEST_F(LoadScene, reads_no_other_file_where_none_is_allowed) {
+  const LoadOptions alone{.other_files = LoadOptions::OtherFiles::none};
+  const auto path_of = [&](const std::string& name) { return (folder_ / name).string(); };
+  write("secret.mtl", "secret text\n");
+  write("secret.stl", kStl);
+  write("secret.dat", "1 2\n3 4\n");
+  const Scene model = load_scene(
+      write("a.obj", "mtllib " + path_of("secret.mtl") + "\n" + kObj + "usemtl x\nf 1 2 3\n"),
+      alone);
+  EXPECT_EQ(model.meshes.at(0).triangles.size(), 2U);
+  EXPECT_THAT(model.notes.at(0), HasSubstr("other files may not be read"));
+  const auto refusal_of = [&](const std::filesystem::path& path) {
+    return test::error_message([&](const auto& p) { return load_scene(p, alone); }, path);
+  };
+  for (const char* call : {"import", "surface"}) {
+    const std::string file = path_of(call[0] == 'i' ? "secret.stl" : "secret.dat");
+    const std::string message =
+        refusal_of(write("a.csg", std::string(call) + "(file = \"" + file + "\");\n"));
+    EXPECT_THAT(message, HasSubstr("may not be used here")) << call;
+  }
+  EXPECT_THAT(refusal_of(write("a.toml", "[[object]]\nfile = \"secret.stl\"\n")),
+              HasSubstr("may not be read here"));
+  EXPECT_THAT(refusal_of(write("a.scad", "cube(1);")), HasSubstr("may not be read here"));
+}
+
 TEST(SceneBytes, are_told_apart_by_their_content) {
   const auto extension = [](const std::string& text) {
     return find_scene_extension(test::bytes_of(text), "stdin");

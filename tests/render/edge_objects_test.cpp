@@ -12,9 +12,9 @@
 #include <utility>
 #include <vector>
 
-#include "geometry/shapes.h"
 #include "render/camera.h"
 #include "render/prepared_scene.h"
+#include "support/render_scenes.h"
 
 namespace arris::test {
 namespace {
@@ -31,10 +31,10 @@ Scene scene_of_many() {
     object.world_from_object = placed;
     scene.objects.push_back(object);
   };
-  put(make_sphere_mesh(1, 300), {{}, {0, 0, 1}});
-  put(make_box_mesh({1, 1, 1}), {{{0, 1, 0}, {-1, 0, 0}, {0, 0, 2}}, {2, 0, 1}});
-  put(make_box_mesh({40, 40, 40}), {});
-  put(make_plane_mesh({6, 6}), {});
+  put(make_sphere_mesh(6), {{}, {0, 0, 1}});
+  put(make_box_mesh({0.5, 0.5, 0.5}), {{{0, 1, 0}, {-1, 0, 0}, {0, 0, 2}}, {2, 0, 1}});
+  put(make_box_mesh({20, 20, 20}), {});
+  put(make_square_mesh(3), {});
   scene.camera = Camera{{0, -5, 2}, {0, 0, 1}, {0, 0, 1}, 40};
   scene.image.width_px = 80;
   scene.image.height_px = 60;
@@ -133,7 +133,7 @@ std::size_t count_creases(double width_px, Creases creases) {
   const Vec3d toward = normalize(Vec3d{1, 0.9, 0.8});
   Scene scene;
   scene.materials.emplace_back();
-  scene.meshes.push_back(make_box_mesh({2 * kHalf, 2 * kHalf, 2 * kHalf}));
+  scene.meshes.push_back(make_box_mesh({kHalf, kHalf, kHalf}));
   Object object;
   object.mesh = {0};
   object.material = {0};

@@ -11,9 +11,9 @@
 #include <utility>
 #include <vector>
 
-#include "geometry/shapes.h"
 #include "render/edge_objects.h"
 #include "render/prepared_scene.h"
+#include "support/render_scenes.h"
 
 namespace arris::test {
 namespace {
@@ -31,11 +31,13 @@ Scene stacked_scene() {
     object.world_from_object.translation = at;
     scene.objects.push_back(object);
   };
-  put(make_box_mesh({12, 12, 0.2}), {0, 0, -0.1});
-  put(make_box_mesh({3, 1, 0.1}), {0.3, 0, 1});
-  put(make_box_mesh({1, 3, 0.1}), {0, 0.2, 1.5});
-  put(make_sphere_mesh(0.6, 16), {0.2, 0.1, 2.2});
-  put(make_box_mesh({0.4, 0.5, 0.6}), {-0.4, -0.2, 0.5});
+  put(make_box_mesh({6, 6, 0.1}), {0, 0, -0.1});
+  put(make_box_mesh({1.5, 0.5, 0.05}), {0.3, 0, 1});
+  put(make_box_mesh({0.5, 1.5, 0.05}), {0, 0.2, 1.5});
+  Mesh ball = make_sphere_mesh(2);
+  for (Vec3f& p : ball.positions) p *= 0.6F;
+  put(std::move(ball), {0.2, 0.1, 2.2});
+  put(make_box_mesh({0.2, 0.25, 0.3}), {-0.4, -0.2, 0.5});
   scene.lights.emplace_back(PointLight{{0.5, -0.4, 5}, Rgb(10)});
   AreaLight area;
   area.corner = {-1, 0.5, 5};

@@ -51,7 +51,10 @@ class ViewServerTest : public testing::Test {
     ViewRendererSettings renderer;
     renderer.threads = 1;
     renderer.upload = settings.allow_upload;
-    renderer.open = [](const std::filesystem::path& file, const std::string& name) {
+    renderer.open = [](const std::filesystem::path& file, const std::string& name,
+                       bool is_foreign) {
+      EXPECT_TRUE(is_foreign);
+      if (name == "path.stl") throw Error(Error::Kind::input, file.string(), "is cut short");
       if (name == "bad.stl") throw Error(Error::Kind::input, name, "holds nothing; draw something");
       ViewModel model = make_boxes();
       model.name = name;
@@ -388,6 +391,7 @@ TEST_F(ViewServerTest, shows_models_that_are_dropped) {
   const auto bad = post("bad.stl");
   EXPECT_EQ(bad.status, 422);
   EXPECT_THAT(bad.body, HasSubstr("holds nothing"));
+  EXPECT_EQ(post("path.stl").body.find("/tmp"), std::string::npos);
   EXPECT_EQ(post("..%2Fnew.stl").status, 204);
   for (;;) {
     const json scene = socket->read_text("scene");
@@ -395,6 +399,18 @@ TEST_F(ViewServerTest, shows_models_that_are_dropped) {
     EXPECT_EQ(scene["objects"].size(), 1U);
     break;
   }
+}
+
+// An empty variable in a script must not open the server to all.
+TEST(ViewServer, listens_to_all_only_if_that_is_said) {
+  for (const char* host : {"", "*", "0"}) {
+    ServerSettings settings;
+    settings.host = host;
+    EXPECT_THROW(ViewServer(make_boxes(), {}, settings), Error) << host;
+  }
+  ServerSettings settings;
+  settings.host = "0.0.0.0";
+  EXPECT_TRUE(ViewServer(make_boxes(), {}, settings).is_open_to_all());
 }
 
 TEST_F(ViewServerTest, ends_when_the_last_client_has_left) {
