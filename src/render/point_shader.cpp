@@ -1,8 +1,15 @@
 #include "render/point_shader.h"
 
 #include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <span>
+#include <vector>
 
 #include "base/sobol.h"
+#include "render/film.h"
+#include "shading/lights.h"
 
 namespace arris {
 namespace {
@@ -17,6 +24,10 @@ PathSettings path_settings(const PreparedScene& scene, EdgePointShader kind) {
   return settings;
 }
 
+float sum_of(Rgb c) {
+  return c.x + c.y + c.z;
+}
+
 }  // namespace
 
 PointShader make_point_shader(const EdgePointSettings& settings) {
@@ -28,6 +39,22 @@ PointShader make_point_shader(const EdgePointSettings& settings) {
                                                                 : kGiPaths;
   }
   return shader;
+}
+
+void limit_outliers(std::span<PathSample> paths, float white) {
+  constexpr float kTimesOthers = 8, kTimesWhite = 2;
+  constexpr std::size_t kFewest = 4;
+  if (paths.size() < kFewest) return;
+  float all = 0;
+  for (const PathSample& path : paths) all += sum_of(path.radiance);
+  for (PathSample& path : paths) {
+    const float own = sum_of(path.radiance);
+    const float others = (all - own) / float(paths.size() - 1);
+    const float most = std::max(kTimesOthers * others, 3 * kTimesWhite * white);
+    if (!(own > most)) continue;
+    path.radiance *= most / own;
+    path.painted *= most / own;
+  }
 }
 
 Rgb shade_pixel(const PreparedScene& scene, const CameraRays& camera, const PixelFilter& filter,
@@ -52,16 +79,20 @@ ShadedPoint shade_point(const PreparedScene& scene, const CameraRays& camera,
   Sampler place(shader.seed, std::uint32_t(request.x), std::uint32_t(request.y), first);
   const Vec2f u = place.next_2d();
   const TraceRay ray = camera_ray(camera, request.x + double(u.x), request.y + double(u.y));
-  Rgb sum, painted;
-  FirstHit hit;
+  std::vector<PathSample> samples;
+  samples.reserve(std::size_t(shader.paths));
   for (std::uint32_t i = 0; i < std::uint32_t(shader.paths); ++i) {
     Sampler sampler(shader.seed, std::uint32_t(request.x), std::uint32_t(request.y), first + i);
     sampler.next_2d();
-    const PathSample path = trace_path(scene, settings, ray, sampler, rays);
+    samples.push_back(trace_path(scene, settings, ray, sampler, rays));
+  }
+  limit_outliers(samples, 1 / exposure_scale(scene.scene().image));
+  Rgb sum, painted;
+  for (const PathSample& path : samples) {
     sum += path.radiance;
     painted += path.painted;
-    if (i == 0) hit = path.first;
   }
+  const FirstHit& hit = samples.front().first;
   ShadedPoint point;
   point.radiance = sum * (1 / float(shader.paths));
   const float whole = sum.x + sum.y + sum.z;
@@ -69,6 +100,14 @@ ShadedPoint shade_point(const PreparedScene& scene, const CameraRays& camera,
   point.position = hit.hit ? ray.origin + ray.direction * hit.depth : ray.direction;
   point.normal = hit.geometric_normal;
   point.object = hit.hit ? hit.object - 1 : kFarObject;
+  // A lamp that the camera sees has no surface, but its light is seen where it is.
+  const LightSet& lights = scene.geometry().lights;
+  const float end = hit.hit ? hit.depth : std::numeric_limits<float>::infinity();
+  if (const auto lamp = find_area_light(lights, ray.origin, ray.direction, end, RayKind::camera)) {
+    point.position = ray.origin + ray.direction * lamp->t;
+    point.normal = lights.rectangles[lamp->index].normal;
+    point.object = std::uint32_t(scene.scene().objects.size()) + lamp->index;
+  }
   return point;
 }
 

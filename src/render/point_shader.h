@@ -7,6 +7,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 
 #include "arris/edge_point.h"
 #include "edgepoint/point_cache.h"
@@ -39,6 +40,11 @@ struct PixelRequest {
 };
 Rgb shade_pixel(const PreparedScene& scene, const CameraRays& camera, const PixelFilter& filter,
                 const PointShader& shader, const PixelRequest& request, PathRays& rays);
+
+// A point's colour is seen around it until it is replaced: a path that is far brighter than the others, such as one
+// that a mirror has sent into a lamp, would be a blob. Of four paths or more none counts for more than eight times the
+// mean of the others, or twice white. That loses light; a view that stands still gets it back by its own paths.
+void limit_outliers(std::span<PathSample> paths, float white);
 
 ShadedPoint shade_point(const PreparedScene& scene, const CameraRays& camera,
                         const PointShader& shader, const PointRequest& request, PathRays& rays);

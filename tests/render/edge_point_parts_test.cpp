@@ -9,6 +9,7 @@
 #include <variant>
 #include <vector>
 
+#include "render/point_shader.h"
 #include "render/stale_points.h"
 #include "render/still_film.h"
 
@@ -126,6 +127,29 @@ TEST(StalePoints, are_looked_for_where_objects_have_moved) {
   want_moved(view, {&behind, 1}, wanted);
   want_moved(view, {&around, 1}, wanted);
   EXPECT_EQ(wanted, before);
+}
+
+TEST(PointShader, a_path_far_brighter_than_the_others_counts_for_less) {
+  std::vector<PathSample> paths(16);
+  for (PathSample& path : paths) path.radiance = Rgb(0.5F);
+  paths[3].radiance = {200, 100, 0};
+  paths[3].painted = {100, 0, 0};
+  limit_outliers(paths, 1);
+  // Twice white is less than eight times the others' mean.
+  EXPECT_NEAR(paths[3].radiance.x, 8, 1e-4);
+  EXPECT_NEAR(paths[3].radiance.y, 4, 1e-4);
+  EXPECT_NEAR(paths[3].painted.x, 4, 1e-4);
+  EXPECT_EQ(paths[2].radiance, Rgb(0.5F));
+  for (PathSample& path : paths) path.radiance = Rgb(0);
+  paths[5].radiance = Rgb(3);
+  paths[6].radiance = Rgb(1.9F);
+  limit_outliers(paths, 1);
+  EXPECT_NEAR(paths[5].radiance.x, 2, 1e-6);
+  EXPECT_EQ(paths[6].radiance, Rgb(1.9F));
+  paths.resize(3);
+  paths[0].radiance = Rgb(1000);
+  limit_outliers(paths, 1);
+  EXPECT_EQ(paths[0].radiance, Rgb(1000));
 }
 
 }  // namespace

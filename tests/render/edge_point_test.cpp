@@ -254,6 +254,33 @@ TEST(EdgePoint, what_moves_in_every_frame_does_not_lag) {
   EXPECT_LT(rmse(*picture, reference), 1.5 * rmse(anew.next_frame(), reference));
 }
 
+// A lamp before a wall has no surface of its own: its points lie on it, not on the wall, whichever way the eye moves.
+TEST(EdgePoint, the_light_of_a_lamp_moves_with_it) {
+  Scene described = make_scene(64);
+  described.image.max_depth = 1;
+  AreaLight lamp;
+  lamp.corner = {-0.5, -1.5, 2};
+  lamp.edge_u = {0, 0, 1};
+  lamp.edge_v = {-0.5, -0.5, 0};
+  lamp.radiance = Rgb(1);
+  const Vec3d eye = described.camera->position;
+  if (dot(cross(lamp.edge_u, lamp.edge_v), eye - lamp.corner) < 0) {
+    std::swap(lamp.edge_u, lamp.edge_v);
+  }
+  described.lights = {lamp};
+  EdgePointEngine engine(prepare_scene(described), synchronous(EdgePointShader::direct));
+  const Image* picture = nullptr;
+  for (int i = 0; i < 8; ++i) {
+    described.camera->position = eye + Vec3d{0.12 * i, 0, 0};
+    engine.set_camera(*described.camera);
+    picture = &engine.next_frame();
+  }
+  const auto last = prepare_scene(described);
+  const Image reference = render_path(described, 256).picture.color;
+  EdgePointEngine anew(last, synchronous(EdgePointShader::direct));
+  EXPECT_LT(rmse(*picture, reference), 1.3 * rmse(anew.next_frame(), reference));
+}
+
 TEST(EdgePoint, smooth_meshes_show_outlines_only) {
   Scene scene = make_scene(32);
   Mesh sphere = make_sphere_mesh(3);
