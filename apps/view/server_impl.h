@@ -12,6 +12,7 @@
 #include <optional>
 #include <string>
 
+#include "io/child_process.h"
 #include "view/client_queue.h"
 #include "view/view_server.h"
 
@@ -86,7 +87,7 @@ class ViewServer::Impl {
   std::map<ClientId, std::weak_ptr<ClientSession>> clients_;
   ClientId next_client_ = 1;
   std::uint64_t uploads_ = 0;
-  std::optional<std::filesystem::path> upload_folder_;
+  std::optional<ScratchFolder> upload_folder_;
   std::optional<std::filesystem::file_time_type> watched_time_, shown_time_;
   std::unique_ptr<ViewRenderer> renderer_;  // last: its thread uses the context
 };
