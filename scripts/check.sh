@@ -33,13 +33,14 @@ step_includes() {
 
 step_tidy() { scripts/tidy.py; }
 
-# Built by clang, whose warnings are errors here. Without the statistics of samplers, which are about numbers and
-# shoot a million directions each.
+# Built by clang, whose warnings are errors here. Without statistics, which are about numbers and shoot a million rays
+# each, and without the browser, whose tests send what tests/view sends.
 step_asan() {
+  local statistics='samples_follow_their_pdf|sampled_irradiance_is_what_is_seen|shares_of_what_.*_hold_what_rays_find'
   cmake --preset asan
   cmake --build --preset asan
   ASAN_OPTIONS=detect_leaks=1:strict_string_checks=1 UBSAN_OPTIONS=print_stacktrace=1 \
-    ctest --preset asan --parallel "$jobs" -E 'samples_follow_their_pdf|sampled_irradiance_is_what_is_seen'
+    ctest --preset asan --parallel "$jobs" -E "^web\\.|$statistics"
 }
 
 # The modules that start threads; the rest of the tests would find nothing here. What must be done in a
@@ -47,6 +48,8 @@ step_asan() {
 step_tsan() {
   local threaded='base|render'
   local many_rays='VoidNeighborsOf|Furnace|csg_edges|csg_shadows|rounded_scene|rounded_shadow|closed_form|\.trace\.'
+  many_rays+='|converges_to_the_path|edges_halve_the_error|rounded_outlines|glass_agrees|agree_with_the_path'
+  many_rays+='|agrees_with_the_path|mis\.strategies|tends_to_the_path|grooves_are_hollow'
   cmake --preset tsan
   cmake --build --preset tsan --target test_base test_render
   TSAN_OPTIONS="suppressions=$PWD/scripts/tsan.supp:halt_on_error=1:second_deadlock_stack=1" \

@@ -1,10 +1,12 @@
 #!/usr/bin/env python3
 """tidy.py — runs clang-tidy over the project's sources, on all cores.
 
-A file that passed is not looked at again until it, a header of the project that it includes, or
-.clang-tidy changes (stamps in build/tidy/stamps/). Files still waiting when the time is over count as failed.
+Sources are read in the batches in which the sanitizers' presets compile them (scripts/batches.py), which takes a
+quarter of the time that they take one by one. A batch that passed is not looked at again until one of its files,
+a header of the project that they include, or .clang-tidy changes (stamps in build/tidy/stamps/). Batches still
+waiting when the time is over count as failed.
 
-Usage        tidy.py [FILE…]        the files of the tidy preset's compile_commands.json by default
+Usage        tidy.py [FILE…]        the batches of these files; all by default
 Environment  ARRIS_TIDY_SECONDS     the time limit, 1800 by default
 """
 
@@ -13,6 +15,7 @@ import hashlib
 import json
 import os
 import re
+import shutil
 import subprocess
 import sys
 import time
@@ -38,24 +41,29 @@ def project_files(path, found):
                 project_files(ROOT / folder / name, found)
 
 
-def stamp_of(path):
+def stamp_of(batch, config):
     found = {}
-    project_files(path, found)
-    digest = hashlib.sha256((ROOT / ".clang-tidy").read_bytes())
-    digest.update(path.as_posix().encode())
+    project_files(batch, found)
+    digest = hashlib.sha256(config)
     for name in sorted(found):
-        digest.update(found[name].encode())
+        digest.update(name.as_posix().encode() + found[name].encode())
     return STAMPS / digest.hexdigest()
 
 
-def sources():
+def batches():
+    """The files that the tidy preset compiles, each with the set of the project's own that it is made of."""
     commands = json.loads((BUILD / "compile_commands.json").read_text())
-    paths = {Path(command["directory"], command["file"]).resolve() for command in commands}
-    return {p for p in paths if p.is_relative_to(ROOT) and p.relative_to(ROOT).parts[0] in FOLDERS}
+    found = {}
+    for path in {Path(command["directory"], command["file"]).resolve() for command in commands}:
+        if "Unity" in path.parts:
+            found[path] = {Path(name) for name in INCLUDE.findall(path.read_text(encoding="utf-8"))}
+        elif path.relative_to(ROOT).parts[0] in FOLDERS:
+            found[path] = {path}
+    return found
 
 
 def run(path, stamp, deadline):
-    """The findings on one file as text, or "" if there are none."""
+    """The findings on one batch as text, or "" if there are none."""
     seconds = deadline - time.monotonic()
     if seconds <= 0:
         return f"{path.relative_to(ROOT)}: not checked, the time is over (ARRIS_TIDY_SECONDS)\n"
@@ -86,10 +94,17 @@ def main():
     deadline = time.monotonic() + float(os.environ.get("ARRIS_TIDY_SECONDS", "1800"))
     subprocess.run(["cmake", "--preset", "tidy"], cwd=ROOT, check=True, stdout=subprocess.DEVNULL)
     STAMPS.mkdir(parents=True, exist_ok=True)
-    wanted = {Path(name).resolve() for name in sys.argv[1:]} or sources()
-    waiting = {path: stamp_of(path) for path in wanted}
-    waiting = {path: stamp for path, stamp in waiting.items() if not stamp.exists()}
-    largest_first = sorted(waiting, key=lambda path: -path.stat().st_size)
+    # clang-tidy looks for its settings in the folders above the file that it is given.
+    shutil.copy(ROOT / "tests" / ".clang-tidy", BUILD / "tests" / ".clang-tidy")
+    config = (ROOT / ".clang-tidy").read_bytes() + (ROOT / "tests" / ".clang-tidy").read_bytes()
+    named = {Path(name).resolve() for name in sys.argv[1:]}
+    found = batches()
+    if unknown := named.difference(*found.values()):
+        sys.exit(f"tidy: {sorted(map(str, unknown))} are in no target of the tidy preset")
+    wanted = [batch for batch, files in found.items() if not named or named & files]
+    waiting = {batch: stamp_of(batch, config) for batch in wanted}
+    waiting = {batch: stamp for batch, stamp in waiting.items() if not stamp.exists()}
+    largest_first = sorted(waiting, key=lambda batch: -sum(file.stat().st_size for file in found[batch]))
     seen = set()
     failed = 0
     with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
@@ -100,7 +115,7 @@ def main():
                 if finding not in seen:
                     seen.add(finding)
                     print(finding, flush=True)
-    print(f"tidy: {len(wanted)} files, {len(waiting)} checked anew, {failed} with findings")
+    print(f"tidy: {len(wanted)} batches, {len(waiting)} checked anew, {failed} with findings")
     return 1 if failed else 0
 
 

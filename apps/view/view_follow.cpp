@@ -266,10 +266,10 @@ void ViewRenderer::Loop::publish(bool moving, bool converged) {
   frame->converged = converged;
   frame->samples = view_.engine->stats().still_paths;
   frame->shown = shown_;
-  encoder_.tone_map(*picture_, view_.model->scene.image.exposure);
-  frame->jpeg = encoder_.encode(moving ? JpegSettings{quality_.moving, ChromaDetail::half}
-                                       : JpegSettings{quality_.still, ChromaDetail::full});
-  outputs_.send_frame(std::move(frame));
+  make_codes(*picture_, view_.model->scene.image.exposure, settings_.threads, codes_);
+  codes_ = encoder_->put(std::move(frame), std::move(codes_),
+                         moving ? JpegSettings{quality_.moving, ChromaDetail::half}
+                                : JpegSettings{quality_.still, ChromaDetail::full});
 }
 
 // Left of the split line the first picture, right of it the other one; classes of pixels over both.

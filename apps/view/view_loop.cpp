@@ -31,7 +31,7 @@ bool is_move(const MessageKind& what) {
 }  // namespace
 
 ViewRenderer::Loop::Loop(ViewModel model, ViewRendererSettings settings)
-    : settings_(std::move(settings)), encoder_(settings_.threads) {
+    : settings_(std::move(settings)) {
   auto shared = std::make_shared<const ViewModel>(std::move(model));
   desired_ = first_edits(*shared);
   view_ = build_view(shared, desired_, build_settings());
@@ -45,10 +45,14 @@ ViewRenderer::Loop::~Loop() {
   }
   wake_.notify_all();
   if (thread_.joinable()) thread_.join();
+  encoder_.reset();
 }
 
 void ViewRenderer::Loop::start(ViewOutputs outputs) {
   outputs_ = std::move(outputs);
+  encoder_ = std::make_unique<FrameEncoder>(FrameEncoder::Outputs{
+      outputs_.send_frame,
+      [this](const std::string& error) { send("error", error_message({}, error)); }});
   pace_.note_change(Clock::now());
   thread_ = std::thread([this] { run(); });
 }

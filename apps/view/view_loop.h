@@ -5,6 +5,7 @@
 #include <condition_variable>
 #include <deque>
 #include <map>
+#include <memory>
 #include <mutex>
 #include <string>
 #include <thread>
@@ -102,7 +103,8 @@ class ViewRenderer::Loop {
 
   ViewRendererSettings settings_;
   ViewOutputs outputs_;
-  FrameEncoder encoder_;
+  std::unique_ptr<FrameEncoder> encoder_;
+  Rgb8Picture codes_;
   SetQuality quality_;
 
   ShownView view_;

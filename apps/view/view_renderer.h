@@ -36,7 +36,7 @@ struct ViewText {
   std::optional<ClientId> but_not;
 };
 
-// Called by the renderer's thread.
+// Called by the renderer's threads.
 struct ViewOutputs {
   std::function<void(std::shared_ptr<const ViewFrame>)> send_frame;
   std::function<void(ViewText)> send_text;

@@ -12,7 +12,6 @@
 #include "edgepoint/edge_projection.h"
 #include "edgepoint/fresh_samples.h"
 #include "edgepoint/hidden_points.h"
-#include "edgepoint/hole_filler.h"
 #include "edgepoint/point_raster.h"
 #include "edgepoint/reach_planes.h"
 #include "edgepoint/reconstruct.h"
@@ -67,7 +66,8 @@ FrameMaker::FrameMaker(int width_px, int height_px)
     : image_(width_px, height_px),
       depth_(width_px, height_px),
       wanted_(image_.codes.size(), 255),
-      bands_(make_bands(height_px)) {}
+      bands_(make_bands(height_px)),
+      holes_(width_px, height_px) {}
 
 void FrameMaker::forget() {
   std::fill(wanted_.begin(), wanted_.end(), std::uint8_t{255});
@@ -183,7 +183,7 @@ FrameReport FrameMaker::make(const PixelView& view, const FrameEdges& edges, Poi
   }
   cache.set_seen(seen_);
   report.unresolved = unresolved.size();
-  fill_holes(image_, unresolved, settings.threads, picture);
+  holes_.fill(image_, unresolved, settings.threads, picture);
   const double took = watch.lap();
   const double part = spent.total() > 0 ? took / spent.total() : 0;
   report.times.interpolation = part * spent.interpolation;

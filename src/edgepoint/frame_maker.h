@@ -17,6 +17,7 @@
 #include "edgepoint/depth_cells.h"
 #include "edgepoint/edge_point_image.h"
 #include "edgepoint/edge_raster.h"
+#include "edgepoint/hole_filler.h"
 #include "edgepoint/pixel_view.h"
 #include "edgepoint/point_cache.h"
 #include "edgepoint/tint_image.h"
@@ -78,6 +79,7 @@ class FrameMaker {
   std::vector<std::uint8_t> wanted_;
   std::vector<std::uint32_t> seen_;  // of the points of each block
   std::vector<RowBand> bands_;
+  HoleFiller holes_;
 };
 
 // Length in the world of a pixel's side at depth 1.

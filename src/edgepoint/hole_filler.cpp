@@ -1,7 +1,6 @@
 #include "edgepoint/hole_filler.h"
 
 #include <algorithm>
-#include <array>
 #include <bit>
 #include <cstddef>
 #include <cstdint>
@@ -13,6 +12,7 @@
 #include "base/parallel_for.h"
 #include "edgepoint/antialias.h"
 #include "edgepoint/bit_plane.h"
+#include "edgepoint/interpolate.h"
 #include "edgepoint/shifted_word.h"
 
 namespace arris {
@@ -93,9 +93,6 @@ class Grids {
   std::vector<Level> levels_;
 };
 
-// Steps of up to two pixels each.
-constexpr int kSteps = 8;
-
 void set_color(Image& picture, std::uint32_t pixel, Rgb color) {
   float* const out = picture.values.data() + 3 * std::size_t(pixel);
   out[0] = color.x;
@@ -103,18 +100,13 @@ void set_color(Image& picture, std::uint32_t pixel, Rgb color) {
   out[2] = color.z;
 }
 
-// Pixels without a colour, and those whose colour others may take: not such as edges cross, which are mixtures, unless
-// there are no others.
-struct HolePlanes {
-  BitPlane holes, usable;
-};
-
 void set_bit(BitPlane& plane, int x, int y, bool value) {
   const std::uint64_t bit = std::uint64_t{1} << unsigned(x & 63);
   std::uint64_t& word = plane.row(y)[x >> 6];
   word = value ? word | bit : word & ~bit;
 }
 
+// Usable are first such as no edge crosses: the others are mixtures.
 HolePlanes make_planes(const EdgePointImage& image, std::span<const std::uint32_t> holes,
                        int threads) {
   HolePlanes planes{BitPlane(image.width_px, image.height_px),
@@ -138,117 +130,35 @@ HolePlanes make_planes(const EdgePointImage& image, std::span<const std::uint32_
   return planes;
 }
 
-// For each offset of kReachOffset and its opposite: which of 64 pixels a usable colour reaches from there.
-class UsableTaps {
- public:
-  UsableTaps(const EdgePointImage& image, const BitPlane& usable, int y, int word) {
-    for (std::size_t k = 0; k < kReachOffsets; ++k) {
-      const auto [dx, dy] = kReachOffset[k];
-      const BitPlane& reach = image.reach.planes[k];
-      taps_[2 * k] = reach.row(y)[word] & shifted_word(usable.row(y + dy), word, dx);
-      taps_[2 * k + 1] =
-          shifted_word(reach.row(y - dy), word, -dx) & shifted_word(usable.row(y - dy), word, -dx);
-    }
-  }
-
-  // Pixels that any reaches.
-  [[nodiscard]] std::uint64_t any() const {
-    std::uint64_t any = 0;
-    for (const std::uint64_t tap : taps_) any |= tap;
-    return any;
-  }
-
-  // The mean of the usable colours that reach a pixel, which is a bit of the word.
-  [[nodiscard]] Rgb mean_of(const Image& picture, int x, int y) const {
-    Cell cell;
-    const auto add = [&](int px, int py) {
-      cell.sum += color_of(picture, px, py);
-      ++cell.count;
-    };
-    const unsigned bit = unsigned(x) & 63U;
-    for (std::size_t k = 0; k < kReachOffsets; ++k) {
-      const auto [dx, dy] = kReachOffset[k];
-      if ((taps_[2 * k] >> bit & 1U) != 0) add(x + dx, y + dy);
-      if ((taps_[2 * k + 1] >> bit & 1U) != 0) add(x - dx, y - dy);
-    }
-    return cell.sum * (1 / cell.count);
-  }
-
- private:
-  std::array<std::uint64_t, 2 * kReachOffsets> taps_;
-};
-
-// Of a row; and those of all holes.
-struct HoleWord {
-  int y, word;
-
-  friend bool operator==(const HoleWord&, const HoleWord&) = default;
-};
-std::vector<HoleWord> words_of(const EdgePointImage& image, std::span<const std::uint32_t> holes) {
-  std::vector<HoleWord> words;
-  const auto width = std::uint32_t(image.width_px);
-  for (const std::uint32_t hole : holes) {
-    const HoleWord word{int(hole / width), int(hole % width / 64)};
-    if (words.empty() || words.back() != word) words.push_back(word);
-  }
-  return words;
-}
-// That one thread looks at.
-constexpr std::size_t kWordsAtOnce = 64;
-
 struct FilledHole {
   int x, y;
   Rgb color;
 };
 
-// Leaves those holes that nothing reaches.
-void spread_reached(const EdgePointImage& image, std::span<const HoleWord> words, int threads,
-                    HolePlanes& planes, Image& picture) {
-  std::vector<std::vector<FilledHole>> filled((words.size() + kWordsAtOnce - 1) / kWordsAtOnce);
-  for (int step = 0; step < kSteps; ++step) {
-    parallel_for(filled.size(), {.grain = 1, .threads = threads}, [&](std::size_t i) {
-      filled[i].clear();
-      const std::size_t first = i * kWordsAtOnce;
-      for (const auto [y, word] :
-           words.subspan(first, std::min(kWordsAtOnce, words.size() - first))) {
-        const std::uint64_t holes = planes.holes.row(y)[word];
-        if (holes == 0) continue;
-        const UsableTaps taps(image, planes.usable, y, word);
-        for (std::uint64_t reached = holes & taps.any(); reached != 0; reached &= reached - 1) {
-          const int x = 64 * word + std::countr_zero(reached);
-          filled[i].push_back({x, y, taps.mean_of(picture, x, y)});
-        }
-      }
-    });
-    bool any = false;
-    for (const std::vector<FilledHole>& part : filled) {
-      for (const FilledHole& hole : part) {
-        set_color(picture, std::uint32_t(image.offset(hole.x, hole.y)), hole.color);
-        set_bit(planes.holes, hole.x, hole.y, false);
-        set_bit(planes.usable, hole.x, hole.y, true);
-        any = true;
-      }
-    }
-    if (!any) return;
-  }
-}
-
 // All that have a colour and belong to a region: the narrow one between an outline and a shadow has pixels alone that
 // edges cross.
-void use_mixtures(const EdgePointImage& image, std::span<const HoleWord> words,
-                  HolePlanes& planes) {
-  const auto use_row = [&](int y, int word) {
-    const std::uint64_t in_region =
-        image.corners.primary[0].row(y)[word] | image.corners.secondary[0].row(y)[word];
-    planes.usable.row(y)[word] = in_region & ~planes.holes.row(y)[word];
+void use_mixtures(const EdgePointImage& image, HolePlanes& planes, int threads) {
+  parallel_for(
+      std::size_t(image.height_px), {.grain = 128, .threads = threads}, [&](std::size_t row) {
+        const int y = int(row);
+        for (int word = 0; word < planes.usable.words(); ++word) {
+          const std::uint64_t in_region =
+              image.corners.primary[0].row(y)[word] | image.corners.secondary[0].row(y)[word];
+          planes.usable.row(y)[word] = in_region & ~planes.holes.row(y)[word];
+        }
+      });
+}
+
+// Pixels of a word that edges cross, and those beside them.
+std::uint64_t near_edges(const EdgePointImage& image, int y, int word) {
+  const auto& corners = image.corners.primary;
+  const auto is_empty = [&](int row, int dx) {
+    std::uint64_t all = ~std::uint64_t{0};
+    for (const BitPlane& corner : corners) all &= shifted_word(corner.row(row), word, dx);
+    return all;
   };
-  for (const auto [y, word] : words) {
-    for (int row = std::max(0, y - 2); row <= std::min(image.height_px - 1, y + 2); ++row) {
-      for (int w = std::max(0, word - 1); w <= std::min(planes.usable.words() - 1, word + 1); ++w) {
-        use_row(row, w);
-      }
-    }
-  }
+  return ~(is_empty(y, 0) & is_empty(y, -1) & is_empty(y, 1) & is_empty(y - 1, 0) &
+           is_empty(y + 1, 0));
 }
 
 // Mixes the colours of a simple pixel's regions, where one of them was a hole.
@@ -307,21 +217,75 @@ class EdgeMixer {
 
 }  // namespace
 
-void fill_holes(const EdgePointImage& image, std::span<const std::uint32_t> holes, int threads,
-                Image& picture) {
+HoleFiller::HoleFiller(int width_px, int height_px)
+    : filled_stride_(std::size_t(width_px + 63) / 64 + kVectorWords),
+      colors_(height_px + 2 * kRowMargin, width_px),
+      filled_(filled_stride_ * std::size_t(height_px)) {}
+
+// Step by step. Leaves those holes that nothing reaches.
+void HoleFiller::spread_reached(const EdgePointImage& image, int threads, HolePlanes& planes) {
+  constexpr int kSteps = 8;  // of up to two pixels each
+  const auto height = std::size_t(image.height_px);
+  const int words = planes.holes.words();
+  std::vector<std::uint8_t> changes(height + 2 * kRowMargin, 1);
+  for (int step = 0; step < kSteps; ++step) {
+    std::vector<std::uint8_t> changed(changes.size(), 0);
+    parallel_for(height, {.grain = 8, .threads = threads}, [&](std::size_t y) {
+      // Rows from y − kRowMargin on.
+      const std::uint8_t* const around = changes.data() + y;
+      if (std::all_of(around, around + 2 * kRowMargin + 1, [](auto c) { return c == 0; })) return;
+      std::uint64_t* const filled = filled_.data() + y * filled_stride_;
+      changed[y + kRowMargin] = fill_reached_row(image, planes, int(y), colors_, filled) ? 1 : 0;
+    });
+    if (std::ranges::all_of(changed, [](auto c) { return c == 0; })) return;
+    parallel_for(height, {.grain = 64, .threads = threads}, [&](std::size_t y) {
+      if (changed[y + kRowMargin] == 0) return;
+      for (int word = 0; word < words; ++word) {
+        const std::uint64_t filled = filled_[y * filled_stride_ + std::size_t(word)];
+        planes.holes.row(int(y))[word] &= ~filled;
+        planes.usable.row(int(y))[word] |= filled;
+      }
+    });
+    changes.swap(changed);
+  }
+}
+
+void HoleFiller::fill(const EdgePointImage& image, std::span<const std::uint32_t> holes,
+                      int threads, Image& picture) {
   if (holes.empty()) return;
   HolePlanes planes = make_planes(image, holes, threads);
   const BitPlane before = planes.holes;
-  const std::vector<HoleWord> words = words_of(image, holes);
-  spread_reached(image, words, threads, planes, picture);
+  const auto height = std::size_t(image.height_px), width = std::size_t(image.width_px);
+  const ParallelOptions rows{.grain = 32, .threads = threads};
+  parallel_for(height, rows, [&](std::size_t y) {
+    part_row(picture.values.data() + 3 * width * y, image.width_px, colors_.row(int(y)));
+  });
+  spread_reached(image, threads, planes);
   const BitPlane not_of_region = planes.holes;
-  use_mixtures(image, words, planes);
-  spread_reached(image, words, threads, planes, picture);
+  use_mixtures(image, planes, threads);
+  spread_reached(image, threads, planes);
+  const auto for_filled = [&](int y, const auto& call) {
+    for (int word = 0; word < before.words(); ++word) {
+      const std::uint64_t filled = before.row(y)[word] & ~planes.holes.row(y)[word];
+      if (filled != 0) call(word, filled);
+    }
+  };
+  parallel_for(height, rows, [&](std::size_t row) {
+    const ColorRow colors = colors_.row(int(row));
+    for_filled(int(row), [&](int word, std::uint64_t filled) {
+      for (; filled != 0; filled &= filled - 1) {
+        const int x = 64 * word + std::countr_zero(filled);
+        set_color(picture, std::uint32_t(image.offset(x, int(row))), color_at(colors, x));
+      }
+    });
+  });
   EdgeMixer mixer(image, {before, not_of_region, planes.holes}, picture);
-  for (const std::uint32_t hole : holes) {
-    const int x = int(hole % std::uint32_t(picture.width_px));
-    const int y = int(hole / std::uint32_t(picture.width_px));
-    if (!planes.holes.at(x, y)) mixer.add_around(x, y);
+  for (int y = 0; y < image.height_px; ++y) {
+    for_filled(y, [&](int word, std::uint64_t filled) {
+      for (filled &= near_edges(image, y, word); filled != 0; filled &= filled - 1) {
+        mixer.add_around(64 * word + std::countr_zero(filled), y);
+      }
+    });
   }
   mixer.finish(picture);
   Grids grids(picture, planes.holes);

@@ -5,19 +5,36 @@
 //            pixels, found on ever coarser grids. Pixels that one edge crosses are mixed of their two regions' colours
 //            where one of these was filled.
 // Guarantee  colours cross no edge, but in regions in which nothing is known (tests/edgepoint/points_test.cpp)
-// Cost       nothing without holes; of the grids only what holes lie in
+// Cost       nothing without holes; a step what interpolation costs, of the grids only what holes lie in. Keeps a
+//            picture's memory.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <span>
+#include <vector>
 
 #include "arris/image.h"
+#include "edgepoint/color_rows.h"
 #include "edgepoint/edge_point_image.h"
+#include "edgepoint/interpolate.h"
 
 namespace arris {
 
-// holes: offsets of pixels, each once.
-void fill_holes(const EdgePointImage& image, std::span<const std::uint32_t> holes, int threads,
-                Image& picture);
+class HoleFiller {
+ public:
+  HoleFiller(int width_px, int height_px);
+
+  // Sizes must be the filler's. holes: offsets of pixels, each once.
+  void fill(const EdgePointImage& image, std::span<const std::uint32_t> holes, int threads,
+            Image& picture);
+
+ private:
+  void spread_reached(const EdgePointImage& image, int threads, HolePlanes& planes);
+
+  std::size_t filled_stride_;
+  ColorRows colors_;
+  std::vector<std::uint64_t> filled_;  // by the last step
+};
 
 }  // namespace arris

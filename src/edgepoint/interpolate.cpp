@@ -110,11 +110,15 @@ HWY_INLINE void find_masks(const EdgePointImage& image, int y, int word, TapMask
     keep_fresh(image, y, word, out, lacking, std::index_sequence<kTap...>());
 }
 
-// A vector of pixels from x on, which are those of a word from bit `first` on.
+struct ColorLanes {
+  hn::Vec<PixelLanes> r, g, b, weight;
+};
+
+// The means of a vector of pixels from x on, which are those of a word from bit `first` on.
 template <std::size_t... kTap>
-HWY_INLINE void sum_taps(const TapMasks& masks, std::size_t word, unsigned first,
-                         const SampleRows& rows, std::ptrdiff_t x, ColorRow out, float* weight,
-                         std::index_sequence<kTap...> /*taps*/) {
+HWY_INLINE ColorLanes mean_of_taps(const TapMasks& masks, std::size_t word, unsigned first,
+                                   const SampleRows& rows, std::ptrdiff_t x,
+                                   std::index_sequence<kTap...> /*taps*/) {
   const PixelLanes f;
   const auto zero = hn::Zero(f), one = hn::Set(f, 1.0F);
   auto r = zero, g = zero, b = zero, sum = zero;
@@ -131,10 +135,7 @@ HWY_INLINE void sum_taps(const TapMasks& masks, std::size_t word, unsigned first
   };
   (add(std::integral_constant<std::size_t, kTap>()), ...);
   const auto inverse = hn::Div(one, hn::IfThenElse(hn::Gt(sum, zero), sum, one));
-  hn::StoreU(hn::Mul(r, inverse), f, out.r + x);
-  hn::StoreU(hn::Mul(g, inverse), f, out.g + x);
-  hn::StoreU(hn::Mul(b, inverse), f, out.b + x);
-  hn::StoreU(sum, f, weight + x);
+  return {hn::Mul(r, inverse), hn::Mul(g, inverse), hn::Mul(b, inverse), sum};
 }
 
 void interpolate(const EdgePointImage& image, int y, const SampleRows& rows,
@@ -149,7 +150,11 @@ void interpolate(const EdgePointImage& image, int y, const SampleRows& rows,
     for (int x = 64 * word; x < std::min(64 * (word + step), image.width_px); x += lanes) {
       const auto in_masks = std::size_t(x / 64 - word);
       if (masks.any[in_masks] != 0) {
-        sum_taps(masks, in_masks, unsigned(x % 64), rows, x, out.color, out.weight, kAll);
+        const ColorLanes mean = mean_of_taps(masks, in_masks, unsigned(x % 64), rows, x, kAll);
+        hn::StoreU(mean.r, f, out.color.r + x);
+        hn::StoreU(mean.g, f, out.color.g + x);
+        hn::StoreU(mean.b, f, out.color.b + x);
+        hn::StoreU(mean.weight, f, out.weight + x);
         continue;
       }
       for (float* const row : {out.color.r, out.color.g, out.color.b, out.weight}) {
@@ -157,6 +162,63 @@ void interpolate(const EdgePointImage& image, int y, const SampleRows& rows,
       }
     }
   }
+}
+
+// For each tap the usable pixels within reach of holes. Returns whether there are any.
+template <std::size_t... kTap>
+HWY_INLINE bool find_usable(const EdgePointImage& image, const HolePlanes& planes, int y, int word,
+                            TapMasks& out, std::index_sequence<kTap...> /*taps*/) {
+  const WordLanes d;
+  const WordVector holes = hn::LoadU(d, planes.holes.row(y) + word);
+  if (hn::AllTrue(d, hn::Eq(holes, hn::Zero(d)))) return false;
+  WordVector any = hn::Zero(d);
+  hn::StoreU(any, d, out.taps[0].data());
+  const auto add = [&](auto tap) HWY_ATTR {
+    constexpr std::size_t kIndex = decltype(tap)::value + 1;
+    constexpr ReachOffset kOffset = tap_offset(kIndex);
+    const BitPlane& reach = image.reach.planes[(kIndex - 1) / 2];
+    const WordVector reached = kIndex % 2 == 1
+                                   ? hn::LoadU(d, reach.row(y) + word)
+                                   : shifted_words<kOffset.dx>(reach.row(y + kOffset.dy), word);
+    const WordVector mask = hn::And(
+        hn::And(shifted_words<kOffset.dx>(planes.usable.row(y + kOffset.dy), word), reached),
+        holes);
+    hn::StoreU(mask, d, out.taps[kIndex].data());
+    any = hn::Or(any, mask);
+  };
+  (add(std::integral_constant<std::size_t, kTap>()), ...);
+  hn::StoreU(any, d, out.any.data());
+  return !hn::AllTrue(d, hn::Eq(any, hn::Zero(d)));
+}
+
+bool fill_reached(const EdgePointImage& image, const HolePlanes& planes, int y,
+                  const SampleRows& rows, std::uint64_t* filled) {
+  constexpr auto kAll = std::make_index_sequence<kTaps>();
+  constexpr auto kOthers = std::make_index_sequence<kTaps - 1>();
+  const PixelLanes f;
+  const ColorRow colors = rows[2];
+  const int step = int(hn::Lanes(WordLanes())), lanes = int(hn::Lanes(f));
+  bool any = false;
+  TapMasks masks;
+  for (int word = 0; word < planes.holes.words(); word += step) {
+    if (!find_usable(image, planes, y, word, masks, kOthers)) {
+      std::fill_n(filled + word, step, std::uint64_t{0});
+      continue;
+    }
+    any = true;
+    std::copy_n(masks.any.begin(), step, filled + word);
+    for (int x = 64 * word; x < std::min(64 * (word + step), image.width_px); x += lanes) {
+      const auto in_masks = std::size_t(x / 64 - word);
+      const auto first = unsigned(x % 64);
+      const auto mask = mask_from(f, masks.any[in_masks], first);
+      if (hn::AllFalse(f, mask)) continue;
+      const ColorLanes mean = mean_of_taps(masks, in_masks, first, rows, x, kAll);
+      hn::BlendedStore(mean.r, mask, f, colors.r + x);
+      hn::BlendedStore(mean.g, mask, f, colors.g + x);
+      hn::BlendedStore(mean.b, mask, f, colors.b + x);
+    }
+  }
+  return any;
 }
 
 void interleave(ColorRow row, int width, float* out) {
@@ -174,6 +236,24 @@ void interleave(ColorRow row, int width, float* out) {
   }
 }
 
+void part(const float* pixels, int width, ColorRow row) {
+  const hn::CappedTag<float, 16> f;
+  const int lanes = int(hn::Lanes(f));
+  int x = 0;
+  for (; x + lanes <= width; x += lanes) {
+    hn::Vec<decltype(f)> r, g, b;
+    hn::LoadInterleaved3(f, pixels + 3 * std::ptrdiff_t(x), r, g, b);
+    hn::StoreU(r, f, row.r + x);
+    hn::StoreU(g, f, row.g + x);
+    hn::StoreU(b, f, row.b + x);
+  }
+  for (; x < width; ++x) {
+    row.r[x] = pixels[3 * x];
+    row.g[x] = pixels[3 * x + 1];
+    row.b[x] = pixels[3 * x + 2];
+  }
+}
+
 }  // namespace
 }  // namespace arris::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
@@ -183,6 +263,18 @@ namespace arris {
 
 HWY_EXPORT(interpolate);
 HWY_EXPORT(interleave);
+HWY_EXPORT(part);
+HWY_EXPORT(fill_reached);
+
+namespace {
+
+SampleRows rows_around(ColorRows& colors, int y) {
+  SampleRows rows;
+  for (int dy = -2; dy <= 2; ++dy) rows[std::size_t(2 + dy)] = colors.row(y + dy);
+  return rows;
+}
+
+}  // namespace
 
 void interleave_row(ColorRow row, int width, float* out) {
   HWY_DYNAMIC_DISPATCH(interleave)(row, width, out);
@@ -190,9 +282,16 @@ void interleave_row(ColorRow row, int width, float* out) {
 
 void interpolate_row(const EdgePointImage& image, int y, ColorRows& samples,
                      const InterpolatedRow& out) {
-  SampleRows rows;
-  for (int dy = -2; dy <= 2; ++dy) rows[std::size_t(2 + dy)] = samples.row(y + dy);
-  HWY_DYNAMIC_DISPATCH(interpolate)(image, y, rows, out);
+  HWY_DYNAMIC_DISPATCH(interpolate)(image, y, rows_around(samples, y), out);
+}
+
+void part_row(const float* pixels, int width, ColorRow row) {
+  HWY_DYNAMIC_DISPATCH(part)(pixels, width, row);
+}
+
+bool fill_reached_row(const EdgePointImage& image, const HolePlanes& planes, int y,
+                      ColorRows& colors, std::uint64_t* filled) {
+  return HWY_DYNAMIC_DISPATCH(fill_reached)(image, planes, y, rows_around(colors, y), filled);
 }
 
 }  // namespace arris

@@ -25,7 +25,18 @@ struct InterpolatedRow {
 void interpolate_row(const EdgePointImage& image, int y, ColorRows& samples,
                      const InterpolatedRow& out);
 
-// A row of planes as one of pixels.
+// A row of planes as one of pixels, and back.
 void interleave_row(ColorRow row, int width, float* out);
+void part_row(const float* pixels, int width, ColorRow row);
+
+// Pixels without a colour, and those whose colour others may take.
+struct HolePlanes {
+  BitPlane holes, usable;
+};
+
+// Gives the holes of row y the means of what is usable of rows y − 2 to y + 2 within reach. filled: a bit for each hole
+// that has got one, of as many words as the planes have, and kVectorWords more. Returns whether there are any.
+bool fill_reached_row(const EdgePointImage& image, const HolePlanes& planes, int y,
+                      ColorRows& colors, std::uint64_t* filled);
 
 }  // namespace arris

@@ -22,10 +22,15 @@ inline float exposure_scale(double exposure) {
   return std::min(float(std::exp2(exposure)), kBrightestShown);
 }
 
+struct DisplayCurve {
+  static constexpr float kFresnel = 0.04F;
+  static constexpr float kStartCompression = 0.8F - kFresnel;
+  static constexpr float kDesaturation = 0.15F;
+};
+
 inline Rgb eval_display_curve(Rgb linear, float scale) {
-  constexpr float kFresnel = 0.04F;
-  constexpr float kStartCompression = 0.8F - kFresnel;
-  constexpr float kDesaturation = 0.15F;
+  constexpr float kFresnel = DisplayCurve::kFresnel;
+  constexpr float kStartCompression = DisplayCurve::kStartCompression;
   const auto displayable = [](float value) {
     return value > 0 ? std::min(value, kBrightestShown) : 0.0F;
   };
@@ -41,7 +46,7 @@ inline Rgb eval_display_curve(Rgb linear, float scale) {
   const float range = 1 - kStartCompression;
   const float new_peak = 1 - range * range / (peak + range - kStartCompression);
   color *= new_peak / peak;
-  const float white = 1 - 1 / (kDesaturation * (peak - new_peak) + 1);
+  const float white = 1 - 1 / (DisplayCurve::kDesaturation * (peak - new_peak) + 1);
   return color * (1 - white) + Rgb(new_peak) * white;
 }
 

@@ -12,8 +12,8 @@
 namespace arris::view {
 namespace {
 
-TEST(FrameEncoder, shows_what_a_saved_picture_shows_to_within_a_code) {
-  constexpr int kWidth = 512, kHeight = 64;
+TEST(ToneMap, shows_what_a_saved_picture_shows_to_within_a_code) {
+  constexpr int kWidth = 519, kHeight = 64;
   Image image(kWidth, kHeight, 3);
   // From far below the first code to far above the last one, in many colours.
   for (int y = 0; y < kHeight; ++y) {
@@ -27,9 +27,9 @@ TEST(FrameEncoder, shows_what_a_saved_picture_shows_to_within_a_code) {
   image.at(0, 0, 0) = std::numeric_limits<float>::quiet_NaN();
   image.at(1, 0, 0) = std::numeric_limits<float>::infinity();
   image.at(2, 0, 0) = -1;
-  FrameEncoder encoder(1);
+  Rgb8Picture shown;
   for (const double exposure : {0.0, 2.5, -4.0}) {
-    const Rgb8Picture& shown = encoder.tone_map(image, exposure);
+    make_codes(image, exposure, 1, shown);
     for (int y = 0; y < kHeight; ++y) {
       for (int x = 0; x < kWidth; ++x) {
         const std::size_t at = image.offset(x, y);
@@ -44,15 +44,16 @@ TEST(FrameEncoder, shows_what_a_saved_picture_shows_to_within_a_code) {
   }
 }
 
-TEST(FrameEncoder, moving_pictures_are_smaller) {
+TEST(JpegEncoder, moving_pictures_are_smaller) {
   Image image(128, 64, 3);
   for (std::size_t i = 0; i < image.values.size(); ++i) {
     image.values[i] = float(i * 7919 % 101) / 101;
   }
-  FrameEncoder encoder(1);
-  encoder.tone_map(image, 0);
-  const auto moving = encoder.encode({60, ChromaDetail::half});
-  const auto still = encoder.encode({90, ChromaDetail::full});
+  Rgb8Picture picture;
+  make_codes(image, 0, 1, picture);
+  JpegEncoder encoder;
+  const auto moving = encoder.encode(picture, {60, ChromaDetail::half});
+  const auto still = encoder.encode(picture, {90, ChromaDetail::full});
   EXPECT_LT(moving.size() * 3, still.size() * 2);
   EXPECT_EQ(decode_jpeg(still, "still").width_px, 128);
 }

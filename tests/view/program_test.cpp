@@ -11,7 +11,7 @@
 #include <string>
 
 #include "program/run_program.h"
-#include "view/web_client.h"
+#include "support/web_client.h"
 
 extern char** environ;
 

@@ -12,8 +12,8 @@
 #include "io/picture_jpeg.h"
 #include "io/picture_png.h"
 #include "support/temporary_folder.h"
+#include "support/web_client.h"
 #include "view/view_server.h"
-#include "view/web_client.h"
 
 namespace arris::view {
 namespace {
