@@ -105,6 +105,11 @@ struct RoundingSettings {
   friend bool operator==(const RoundingSettings&, const RoundingSettings&) = default;
 };
 
+// Which part of which [[object]] of a scene file an object is, for who writes the file again; both are counted from 0.
+struct ObjectOrigin {
+  std::uint32_t entry = 0, part = 0;
+};
+
 struct Object {
   std::string name;
   MeshId mesh;
@@ -112,6 +117,14 @@ struct Object {
   MaterialId material;
   Affine3d world_from_object;
   std::optional<RoundingSettings> rounding;  // empty: the scene's default
+  ObjectOrigin origin;
+};
+
+// A soft ground: a disc across the scene's up, opaque in the middle, gone at the radius.
+struct Ground {
+  Vec3d center;
+  double radius = 1;
+  friend bool operator==(const Ground&, const Ground&) = default;
 };
 
 inline constexpr double kMinFovDeg = 0.01, kMaxFovDeg = 178;
@@ -262,6 +275,7 @@ struct Scene {
   std::optional<Camera> camera;              // empty: framed automatically
   std::optional<Environment> environment;    // empty: --lighting decides
   std::optional<RoundingSettings> rounding;  // default of all objects
+  std::optional<Ground> ground;              // empty: render/staging.h decides
   ImageSettings image;
   // The world's up for automatic framing, sky, studio and ground; glTF: {0, 1, 0}.
   Vec3d up{0, 0, 1};

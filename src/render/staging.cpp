@@ -63,20 +63,30 @@ Material make_ground_material(TextureId fade) {
   return material;
 }
 
-std::uint64_t add_ground(Scene& scene) {
+// Below all objects.
+Ground find_ground(const Scene& scene) {
   const GroundFrame frame = make_ground_frame(scene.up);
   const Bounds bounds = bounds_in(scene, frame);
   const double radius = bounds.diagonal() / 2;
-  if (!(radius > 0)) return 0;
+  if (!(radius > 0)) return {{}, 0};
   const Vec3d middle = bounds.center();
-  const Vec3d center = frame.east * middle.x + frame.north * middle.y +
-                       frame.up * (bounds.lower.z - kGroundGap * radius);
+  return {frame.east * middle.x + frame.north * middle.y +
+              frame.up * (bounds.lower.z - kGroundGap * radius),
+          kRimRadius * radius};
+}
 
+std::uint64_t add_ground(Scene& scene) {
+  if (!scene.ground) scene.ground = find_ground(scene);
+  const auto [center, radius] = *scene.ground;
+  if (!(radius > 0)) {
+    scene.ground.reset();
+    return 0;
+  }
+  const GroundFrame frame = make_ground_frame(scene.up);
   Mesh mesh;
   mesh.name = "ground";
   for (const auto& [u, v] : {std::pair{-1, -1}, {1, -1}, {1, 1}, {-1, 1}}) {
-    mesh.positions.emplace_back(center + frame.east * (u * kRimRadius * radius) +
-                                frame.north * (v * kRimRadius * radius));
+    mesh.positions.emplace_back(center + frame.east * (u * radius) + frame.north * (v * radius));
     mesh.uvs.push_back({float(u + 1) / 2, float(1 - v) / 2});
   }
   mesh.triangles = {{0, 1, 2}, {0, 2, 3}};
@@ -93,21 +103,11 @@ std::uint64_t add_ground(Scene& scene) {
   return 2;
 }
 
-// As readers leave it where a file has none.
-bool is_default(const Material& material) {
-  const Material plain;
-  return material.base_color == plain.base_color && material.metallic == plain.metallic &&
-         material.roughness == plain.roughness && material.transmission == plain.transmission &&
-         material.clearcoat == plain.clearcoat && material.emission == plain.emission &&
-         material.opacity == plain.opacity && !material.base_color_texture &&
-         !material.metallic_roughness_texture && !material.glossy_mix;
-}
-
 void apply_material(Scene& scene, const StageOptions& options) {
   for (Material& each : scene.materials) {
     if (options.material) {
       each = *options.material;
-    } else if (options.source == StageOptions::Source::model && is_default(each)) {
+    } else if (options.source == StageOptions::Source::model && is_unset(each)) {
       each = *find_material_preset("plastic-grey");
     }
   }
@@ -212,7 +212,13 @@ StagingReport stage_model(Scene& scene, const StageOptions& options) {
   }
   apply_camera(scene, options.camera);
   StagingReport report;
-  if (options.ground.value_or(is_model && !has_camera)) report.ground_triangles = add_ground(scene);
+  const bool has_ground =
+      options.ground.value_or(scene.ground.has_value() || (is_model && !has_camera));
+  if (has_ground) {
+    report.ground_triangles = add_ground(scene);
+  } else {
+    scene.ground.reset();
+  }
   const bool framed = !has_camera && !options.camera.position;
   report.problem = problem_with(added_reach(scene, framed, report.ground_triangles > 0), scene);
   return report;

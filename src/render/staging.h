@@ -1,7 +1,8 @@
 // staging.h — makes a picture of a bare model: ground, light, material, camera, rounding
 // What       stage_model() adds to a scene what its file does not say, so that a render of it is a picture
 //            to show. What the file says stays, unless an option asks for something else.
-// Guarantee  the scene has a camera and an environment afterwards; the model's geometry is unchanged
+// Guarantee  afterwards the scene has a camera and an environment, and `ground` is the one that it has; the
+//            model's geometry is unchanged
 // Source     the ground fades out through its opacity, so that no edge shows against the backdrop
 #pragma once
 
@@ -26,8 +27,8 @@ struct StageOptions {
   // A model is staged as described; a scene file only where an option says so.
   enum class Source { model, scene_file } source = Source::model;
   std::optional<Lighting> lighting;  // replaces the file's lights; empty: studio, if it has none
-  std::optional<bool> ground;        // empty: for models without a camera of their own
-  bool rounded = true;               // models get the automatic radius
+  std::optional<bool> ground;  // empty: where the file says so, and for models without a camera
+  bool rounded = true;         // models get the automatic radius
   std::optional<Material> material;  // replaces every material
   CameraOptions camera;
 };

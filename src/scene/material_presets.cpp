@@ -84,4 +84,13 @@ std::vector<std::string> material_preset_names() {
   return names;
 }
 
+bool is_unset(const Material& material) {
+  const Material plain;
+  return material.base_color == plain.base_color && material.metallic == plain.metallic &&
+         material.roughness == plain.roughness && material.transmission == plain.transmission &&
+         material.clearcoat == plain.clearcoat && material.emission == plain.emission &&
+         material.opacity == plain.opacity && !material.base_color_texture &&
+         !material.metallic_roughness_texture && !material.glossy_mix;
+}
+
 }  // namespace arris

@@ -25,4 +25,7 @@ std::span<const MaterialPreset> material_presets();
 std::optional<Material> find_material_preset(std::string_view name);
 std::vector<std::string> material_preset_names();
 
+// As readers leave it where a file has none.
+bool is_unset(const Material& material);
+
 }  // namespace arris
