@@ -68,7 +68,7 @@ OptionGroup staging_group() {
             "replaces the file's lights (default: the file's, else studio)"},
            {"--material", "NAME", "replaces the file's materials; --material list shows the names"},
            {"--ground", "on|off",
-            "a soft ground under the model (default: on for bare models without a camera)"}}};
+            "a soft ground (default: the file's; on for bare models without a camera)"}}};
 }
 
 CommandRow render_row() {

@@ -106,6 +106,7 @@ void TomlMaterials::parse_one(const TomlMember& member) {
   reader.report_unknown();
   if (member.key == "default") {
     context_.scene.materials[0] = material;
+    has_default_ = true;
   } else {
     ids_.emplace(member.key, MaterialId{std::uint32_t(context_.scene.materials.size())});
     context_.scene.materials.push_back(material);

@@ -1,7 +1,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 
 #include "arris/error.h"
 #include "base/nearest_name.h"
@@ -10,6 +9,7 @@
 #include "io/toml_scene_parts.h"
 #include "io/toml_shape.h"
 #include "scene/limits.h"
+#include "scene/material_presets.h"
 #include "scene/placement.h"
 
 namespace arris {
@@ -17,64 +17,6 @@ namespace {
 
 // Of all shapes of a scene file together: a short file must not fill the memory.
 constexpr std::size_t kMaxShapeTriangles = std::size_t(1) << 24;
-constexpr double kMaxTurnDeg = 1e6;
-
-// 4 rows of 4 numbers.
-std::optional<Affine3d> parse_matrix(TomlTableReader& reader) {
-  const TomlMember* member = reader.find("matrix");
-  const auto* rows = std::get_if<TomlArray>(&member->value.data);
-  if (rows == nullptr || rows->size() != 4) {
-    reader.report("matrix", "must be 4 rows of 4 numbers");
-    return std::nullopt;
-  }
-  std::vector<std::vector<double>> m;
-  for (const TomlValue& row : *rows) {
-    if (auto numbers = reader.numbers_of(row, "matrix", 4, kTomlCoordinate)) m.push_back(*numbers);
-  }
-  if (m.size() != 4) return std::nullopt;
-  if (m[3] != std::vector<double>{0, 0, 0, 1}) {
-    reader.report("matrix", "the last row must be [0, 0, 0, 1]");
-    return std::nullopt;
-  }
-  const auto column = [&](std::size_t i) { return Vec3d(m[0][i], m[1][i], m[2][i]); };
-  return Affine3d{{column(0), column(1), column(2)}, column(3)};
-}
-
-// A number or 3 numbers.
-std::optional<Vec3d> parse_scale(TomlTableReader& reader) {
-  const TomlMember* member = reader.find("scale");
-  if (member == nullptr) return std::nullopt;
-  if (std::holds_alternative<TomlArray>(member->value.data)) {
-    return reader.vec3("scale", kTomlCoordinate);
-  }
-  const auto number = reader.number("scale", kTomlCoordinate);
-  return number ? std::optional(Vec3d(*number)) : std::nullopt;
-}
-
-// translate, rotate and scale; what is missing is that of `own`.
-ObjectKey parse_parts(TomlTableReader& reader, const ObjectKey& own) {
-  ObjectKey key;
-  key.translate = reader.vec3("translate", kTomlCoordinate).value_or(own.translate);
-  key.rotate_deg = reader.vec3("rotate", {-kMaxTurnDeg, kMaxTurnDeg}).value_or(own.rotate_deg);
-  key.scale = parse_scale(reader).value_or(own.scale);
-  return key;
-}
-
-void check_not_flat(TomlTableReader& reader, const Mat3d& linear, const char* key) {
-  if (!is_invertible(linear)) reader.report(key, "flattens the object; use a scale other than 0");
-}
-
-Affine3d parse_transform(TomlTableReader& reader, ObjectKey& own) {
-  const bool has_parts = reader.has("translate") || reader.has("rotate") || reader.has("scale");
-  own = parse_parts(reader, own);
-  Affine3d transform = make_placement(own.translate, own.rotate_deg, own.scale);
-  if (reader.has("matrix")) {
-    if (has_parts) reader.report("matrix", "give it alone, or translate, rotate and scale");
-    transform = parse_matrix(reader).value_or(Affine3d{});
-  }
-  check_not_flat(reader, transform.linear, reader.has("matrix") ? "matrix" : "scale");
-  return transform;
-}
 
 template <class Tag>
 void shift(Id<Tag>& id, std::size_t by) {
@@ -112,6 +54,7 @@ void TomlObjects::parse(const TomlValue& value, std::size_t number) {
       text != nullptr ? "object " + in_quotes(*text) : fmt::format("object {}", number),
       context_.problems);
   Placement placement = parse_placement(reader);
+  placement.entry = std::uint32_t(number - 1);
   if (reader.has("file") == reader.has("shape")) {
     reader.report("file", "give either \"file\" or \"shape\"");
   } else if (reader.has("file")) {
@@ -131,6 +74,7 @@ void TomlObjects::place(Object object, Placement& placement) {
   placement.track.parts.push_back(
       {ObjectId{std::uint32_t(objects.size())}, object.world_from_object});
   object.world_from_object = placement.world_from_object * object.world_from_object;
+  object.origin.entry = placement.entry;
   objects.push_back(std::move(object));
 }
 
@@ -142,33 +86,42 @@ std::vector<ObjectKey> TomlObjects::parse_keys(TomlTableReader& reader, const Ob
                   "an object with \"matrix\" can't have keys; use translate, rotate and scale");
   }
   parse_toml_keys(reader, context_.problems, [&](TomlTableReader& key_reader, double frame) {
-    ObjectKey key = parse_parts(key_reader, own);
+    ObjectKey key = parse_toml_motion(key_reader, own);
     key.frame = frame;
-    check_not_flat(key_reader, make_placement({}, {}, key.scale).linear, "scale");
+    report_if_flat(key_reader, make_placement({}, {}, key.scale).linear, "scale");
     keys.push_back(key);
   });
   return keys;
 }
 
+std::optional<MaterialId> TomlObjects::parse_material(TomlTableReader& reader) const {
+  const std::optional<std::string> name = reader.string("material");
+  if (!name) return std::nullopt;
+  const std::optional<MaterialId> material = materials_.find(*name);
+  if (!material) {
+    reader.report("material", fmt::format("there is no [material.…] named {}{}", in_quotes(*name),
+                                          did_you_mean(*name, materials_.names())));
+  }
+  return material;
+}
+
+std::optional<RoundingSettings> TomlObjects::parse_round(TomlTableReader& reader) const {
+  const TomlMember* round = reader.find("round");
+  if (round == nullptr) return std::nullopt;
+  RoundingSettings defaults = context_.scene.rounding.value_or(RoundingSettings{});
+  if (defaults.method == RoundMethod::none) defaults.method = RoundMethod::exact;
+  return parse_toml_rounding(*round, defaults, context_.problems);
+}
+
 TomlObjects::Placement TomlObjects::parse_placement(TomlTableReader& reader) {
   Placement placement;
   placement.name = reader.string("name").value_or("");
-  if (const auto material = reader.string("material")) {
-    placement.material = materials_.find(*material);
-    if (!placement.material) {
-      reader.report("material",
-                    fmt::format("there is no [material.…] named {}{}", in_quotes(*material),
-                                did_you_mean(*material, materials_.names())));
-    }
-  }
+  placement.material = parse_material(reader);
   ObjectKey own;
-  placement.world_from_object = parse_transform(reader, own);
+  placement.world_from_object = parse_toml_transform(reader, own);
   placement.track.keys = parse_keys(reader, own);
-  if (const TomlMember* round = reader.find("round")) {
-    RoundingSettings defaults = context_.scene.rounding.value_or(RoundingSettings{});
-    if (defaults.method == RoundMethod::none) defaults.method = RoundMethod::exact;
-    placement.rounding = parse_toml_rounding(*round, defaults, context_.problems);
-  }
+  placement.rounding = parse_round(reader);
+  placement.hidden = reader.boolean("hidden").value_or(false);
   return placement;
 }
 
@@ -199,7 +152,7 @@ void TomlObjects::add_shape(TomlTableReader& reader, Placement& placement) {
   object.mesh = entry->second;
   object.material = placement.material.value_or(MaterialId{0});
   object.rounding = placement.rounding;
-  place(std::move(object), placement);
+  if (!placement.hidden) place(std::move(object), placement);
 }
 
 void TomlObjects::add_file(TomlTableReader& reader, Placement& placement) {
@@ -208,22 +161,33 @@ void TomlObjects::add_file(TomlTableReader& reader, Placement& placement) {
   const Model* model = find_or_load(*file, reader);
   if (model == nullptr || !has_room(model->objects.size(), reader, "file")) return;
   const std::string prefix = placement.name.empty() ? model->stem : placement.name;
-  for (Object object : model->objects) {
+  const std::vector<PartEdit> edits = parse_parts(reader, *model);
+  for (std::size_t i = 0; i < model->objects.size(); ++i) {
+    const PartEdit edit = edits.empty() ? PartEdit{} : edits[i];
+    if (placement.hidden || edit.hidden) continue;
+    Object object = model->objects[i];
+    object.origin.part = std::uint32_t(i);
     if (model->objects.size() > 1) {
       object.name = prefix + "/" + object.name;
     } else if (!placement.name.empty()) {
       object.name = placement.name;
     }
-    if (placement.material) {
-      object.material = *placement.material;
-      if (object.csg) {
-        object.csg = with_material(*object.csg, *placement.material);
-      } else {
-        object.mesh = without_materials(object.mesh);
-      }
+    if (const auto material = edit.material ? edit.material : placement.material) {
+      give_material(object, *material);
     }
     if (placement.rounding) object.rounding = placement.rounding;
+    if (edit.rounding) object.rounding = edit.rounding;
+    if (edit.file_from_part) object.world_from_object = *edit.file_from_part;
     place(std::move(object), placement);
+  }
+}
+
+void TomlObjects::give_material(Object& object, MaterialId material) {
+  object.material = material;
+  if (object.csg) {
+    object.csg = with_material(*object.csg, material);
+  } else {
+    object.mesh = without_materials(object.mesh);
   }
 }
 
@@ -253,7 +217,10 @@ const TomlObjects::Model* TomlObjects::find_or_load(const std::string& file,
 TomlObjects::Model TomlObjects::append(Scene model, const std::filesystem::path& path) {
   Scene& scene = context_.scene;
   const std::size_t meshes = scene.meshes.size(), materials = scene.materials.size();
-  for (Material& material : model.materials) shift_textures(material, scene.textures.size());
+  for (Material& material : model.materials) {
+    shift_textures(material, scene.textures.size());
+    if (materials_.has_default() && is_unset(material)) material = scene.materials[0];
+  }
   for (Mesh& mesh : model.meshes) {
     for (MaterialId& material : mesh.triangle_materials) shift(material, materials);
   }

@@ -50,6 +50,20 @@ ImageSettings parse_image(const TomlMember& member, TomlProblems& problems) {
   return image;
 }
 
+std::optional<Ground> parse_ground(const TomlMember& member, TomlProblems& problems) {
+  const TomlTable* table = as_toml_table(member, problems);
+  if (table == nullptr) return std::nullopt;
+  TomlTableReader reader(*table, member.value.place, "[ground]", problems);
+  for (const char* key : {"center", "radius"}) {
+    if (!reader.has(key)) reader.report_missing(key);
+  }
+  Ground ground;
+  ground.center = reader.vec3("center", kTomlCoordinate).value_or(ground.center);
+  ground.radius = reader.number("radius", kTomlPositive).value_or(ground.radius);
+  reader.report_unknown();
+  return ground;
+}
+
 class SceneParser {
  public:
   SceneParser(const TomlTable& root, const TomlSceneContext& context)
@@ -74,6 +88,7 @@ class SceneParser {
       defaults.method = RoundMethod::exact;
       scene.rounding = parse_toml_rounding(*round, defaults, problems);
     }
+    if (const auto* ground = reader_.find("ground")) scene.ground = parse_ground(*ground, problems);
     TomlMaterials materials(context_);
     if (const auto* material = reader_.find("material")) materials.parse(*material);
     parse_objects(materials);
@@ -112,7 +127,9 @@ class SceneParser {
       parser.parse(value, ++number);
     }
     if (context_.problems.empty() && context_.scene.objects.empty()) {
-      context_.problems.add(objects->place, "the scene has no object; add an [[object]]");
+      context_.problems.add(objects->place, number == 0
+                                                ? "the scene has no object; add an [[object]]"
+                                                : "all objects are hidden; show one");
     }
   }
 

@@ -1,6 +1,7 @@
 // toml_scene_parts.h — the pieces of read_toml_scene()
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <functional>
 #include <map>
@@ -44,6 +45,13 @@ const TomlArray& toml_elements_of(const TomlMember& member, TomlProblems& proble
 void parse_toml_keys(TomlTableReader& owner, TomlProblems& problems,
                      const std::function<void(TomlTableReader& key, double frame)>& visit);
 
+// translate, rotate and scale; what is missing is that of `own`.
+ObjectKey parse_toml_motion(TomlTableReader& reader, const ObjectKey& own);
+// These, or matrix; they go to `own` as well.
+Affine3d parse_toml_transform(TomlTableReader& reader, ObjectKey& own);
+bool has_toml_transform(TomlTableReader& reader);
+void report_if_flat(TomlTableReader& reader, const Mat3d& linear, const char* key);
+
 // The camera, and its keys into `animation`.
 std::optional<Camera> parse_toml_camera(const TomlMember& member, Vec3d up, Animation& animation,
                                         TomlProblems& problems);
@@ -55,6 +63,8 @@ class TomlMaterials {
 
   void parse(const TomlMember& member);
   [[nodiscard]] std::optional<MaterialId> find(const std::string& name) const;
+  // Whether there is a [material.default].
+  [[nodiscard]] bool has_default() const { return has_default_; }
   // All names, for "did you mean".
   [[nodiscard]] std::vector<std::string> names() const;
 
@@ -65,6 +75,7 @@ class TomlMaterials {
                                         Texture::Wrap wrap_v, TomlPlace place);
 
   const TomlSceneContext& context_;
+  bool has_default_ = false;
   std::map<std::string, MaterialId> ids_{{"default", MaterialId{0}}};
   std::map<std::tuple<std::string, bool, Texture::Wrap, Texture::Wrap>, TextureId> textures_;
 };
@@ -89,6 +100,15 @@ class TomlObjects {
     std::optional<RoundingSettings> rounding;
     Affine3d world_from_object;
     ObjectTrack track;  // parts: what has been placed
+    bool hidden = false;
+    std::uint32_t entry = 0;  // number of the [[object]], from 0
+  };
+  // What an [[object.part]] says of an object of a file.
+  struct PartEdit {
+    bool hidden = false;
+    std::optional<MaterialId> material;
+    std::optional<RoundingSettings> rounding;
+    std::optional<Affine3d> file_from_part;  // instead of where the file has it
   };
   struct Model {
     std::vector<Object> objects;  // ids are the scene's
@@ -96,12 +116,17 @@ class TomlObjects {
   };
 
   Placement parse_placement(TomlTableReader& reader);
+  std::optional<MaterialId> parse_material(TomlTableReader& reader) const;
+  std::optional<RoundingSettings> parse_round(TomlTableReader& reader) const;
+  // By the model's objects; empty: it has no [[object.part]].
+  std::vector<PartEdit> parse_parts(TomlTableReader& owner, const Model& model);
   std::vector<ObjectKey> parse_keys(TomlTableReader& reader, const ObjectKey& own);
   void add_shape(TomlTableReader& reader, Placement& placement);
   void add_file(TomlTableReader& reader, Placement& placement);
   void place(Object object, Placement& placement);
   const Model* find_or_load(const std::string& file, TomlTableReader& reader);
   Model append(Scene model, const std::filesystem::path& path);
+  void give_material(Object& object, MaterialId material);
   MeshId without_materials(MeshId id);
   CsgId with_material(CsgId id, MaterialId material);
   bool has_room(std::size_t objects, TomlTableReader& reader, const char* key) const;
