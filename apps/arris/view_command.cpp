@@ -1,11 +1,13 @@
 #include <fmt/format.h>
 #include <spawn.h>
 
+#include <cstdint>
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "arris/command_line.h"
 #include "arris/commands.h"
@@ -15,6 +17,7 @@
 #include "arris/render.h"
 #include "arris/render_request.h"
 #include "arris/values.h"
+#include "io/file_bytes.h"
 #include "scene/limits.h"
 #include "view/view_server.h"
 
@@ -24,6 +27,7 @@ namespace arris::program {
 namespace {
 
 constexpr std::uint16_t kPort = 7878;
+constexpr std::uint64_t kMostSceneFileBytes = std::uint64_t(64) << 20;
 
 view::ServerSettings make_server_settings(const Arguments& arguments) {
   view::ServerSettings settings;
@@ -52,6 +56,11 @@ view::ViewModel make_model(Input loaded, const std::filesystem::path& file,
   model.name = std::filesystem::path(loaded.name).filename().string();
   model.file = file;
   model.is_scene_file = loaded.is_scene_file;
+  if (model.is_scene_file && !file.empty()) {
+    const std::vector<std::uint8_t> bytes = read_file_bytes(file, kMostSceneFileBytes);
+    model.text.assign(bytes.begin(), bytes.end());
+  }
+  model.has_own_rounding = loaded.scene.rounding.has_value();
   model.scene = std::move(loaded.scene);
   apply_image_options(model.scene.image, arguments);
   if (const auto given = find_given(arguments, "--spp")) {

@@ -1,194 +1,322 @@
 #include "view/scene_file.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
-#include <array>
 #include <cstdint>
 #include <filesystem>
+#include <initializer_list>
+#include <map>
 #include <optional>
-#include <sstream>
 #include <string_view>
+#include <system_error>
+#include <utility>
 #include <vector>
 
 #include "arris/error.h"
-#include "io/file_bytes.h"
+#include "base/utf8_text.h"
 #include "io/scene_writer.h"
+#include "io/toml_document.h"
+#include "io/toml_writer.h"
 #include "scene/material_presets.h"
 
 namespace arris::view {
 namespace {
 
-constexpr std::uint64_t kMostSceneFileBytes = std::uint64_t(16) << 20;
-constexpr std::string_view kStagedMaterial = "plastic-grey";  // render/staging.h
+namespace fs = std::filesystem;
 
-// One value for all objects, if they agree.
-template <class Get>
-auto common_of(const ViewModel& model, const ViewEdits& edits, const Get& get)
-    -> std::optional<decltype(get(model.scene.objects[0], edits.objects[0]))> {
-  std::optional<decltype(get(model.scene.objects[0], edits.objects[0]))> common;
-  for (std::size_t i = 0; i < edits.objects.size(); ++i) {
-    auto value = get(model.scene.objects[i], edits.objects[i]);
-    if (common && !(*common == value)) return std::nullopt;
-    common = std::move(value);
+// Names of files, which hold wherever the scene file is saved, if they can.
+class FileNames {
+ public:
+  explicit FileNames(const ViewModel& model) : model_(model) {}
+
+  // Of the model itself.
+  std::string own() {
+    if (!model_.file.empty()) return name_of(model_.file, model_.file.filename().string());
+    if (!is_utf8(model_.name)) refuse(model_.name);
+    is_relative_ = true;
+    return model_.name;
   }
-  return common;
+
+  // Of a name in the model's scene file.
+  std::string operator()(const std::string& name) {
+    return name_of(model_.file.parent_path() / fs::path(name), name);
+  }
+
+  [[nodiscard]] bool is_relative() const { return is_relative_; }
+
+ private:
+  // Folders may be links, and "..", which is taken away when the file is read, would then lead elsewhere.
+  std::string name_of(const fs::path& path, const std::string& relative) {
+    std::error_code error;
+    const fs::path folder = fs::canonical(path.parent_path(), error);
+    const std::string whole = (error ? fs::absolute(path) : folder / path.filename()).string();
+    if (is_utf8(whole)) return whole;
+    if (!is_utf8(relative)) refuse(relative);
+    is_relative_ = true;
+    return relative;
+  }
+
+  [[noreturn]] static void refuse(const std::string& name) {
+    throw Error(Error::Kind::input, in_quotes(name),
+                "this name is not UTF-8 text, and a scene file can hold no other; rename the file");
+  }
+
+  const ViewModel& model_;
+  bool is_relative_ = false;
+};
+
+// The objects that an [[object]] has made, by their numbers in the model and in the [[object]]'s file.
+struct Entry {
+  struct Part {
+    std::size_t index = 0;
+    std::uint32_t number = 0;
+  };
+  std::vector<Part> parts;
+};
+
+std::map<std::uint32_t, Entry> find_entries(const ViewModel& model) {
+  std::map<std::uint32_t, Entry> entries;
+  for (std::size_t i = 0; i < model.scene.objects.size(); ++i) {
+    const ObjectOrigin origin =
+        model.is_scene_file ? model.scene.objects[i].origin : ObjectOrigin{0, std::uint32_t(i)};
+    entries[origin.entry].parts.push_back({i, origin.part});
+  }
+  return entries;
 }
 
-bool is_moved(const Object& object, const ObjectEdit& edit) {
-  return !(object.world_from_object == edit.world_from_object);
-}
+// Brings one [[object]] to what the view has of its parts.
+class EntryWriter {
+ public:
+  EntryWriter(const ViewModel& model, const ViewEdits& edits, const Entry& entry, TomlTable& table)
+      : model_(model), edits_(edits), entry_(entry), table_(table) {}
 
-// How all objects of the file were moved together.
-std::optional<Affine3d> common_move(const ViewModel& model, const ViewEdits& edits) {
-  const auto moved = common_of(model, edits, is_moved);
-  if (moved && !*moved) return Affine3d{};
-  if (edits.objects.size() != 1) return std::nullopt;
-  return edits.objects[0].world_from_object * inverse(model.scene.objects[0].world_from_object);
-}
+  void write() {
+    if (TomlValue* parts = find_toml(table_, "part")) own_parts_ = std::get<TomlArray>(parts->data);
+    erase_toml(table_, {"part"});
+    write_visible();
+    write_rounding();
+    if (std::ranges::any_of(entry_.parts, [&](auto part) { return is_moved(part); })) {
+      write_places();
+    }
+    for (auto& [number, part] : new_parts_) {
+      set_toml(part, "number", std::int64_t(number) + 1);
+      std::ranges::rotate(part, part.end() - 1);
+      own_parts_.push_back({{}, std::move(part)});
+    }
+    if (!own_parts_.empty()) set_toml(table_, "part", std::move(own_parts_));
+  }
 
-std::optional<RoundingSettings> explicit_rounding(const ViewEdits& edits, const Object& object,
-                                                  const ObjectEdit& edit) {
-  if (edit.rounding) return edit.rounding;
-  // The file has one of its own, which does not count any more.
-  if (object.rounding) return edits.rounding;
-  return std::nullopt;
-}
+ private:
+  [[nodiscard]] const ObjectEdit& edit_of(Entry::Part part) const {
+    return edits_.objects[part.index];
+  }
+  [[nodiscard]] bool is_shape() const {
+    return std::ranges::find(table_, "shape", &TomlMember::key) != table_.end();
+  }
+  [[nodiscard]] bool is_moved(Entry::Part part) const {
+    return !(model_.scene.objects[part.index].world_from_object == edit_of(part).world_from_object);
+  }
 
-std::string names_of(const ViewModel& model, const ViewEdits& edits,
-                     bool (*is_meant)(const Object&, const ObjectEdit&)) {
-  std::vector<std::string> names;
-  for (std::size_t i = 0; i < edits.objects.size(); ++i) {
-    if (is_meant(model.scene.objects[i], edits.objects[i])) {
-      names.push_back(model.scene.objects[i].name);
+  void write_visible() {
+    const auto is_hidden = [&](Entry::Part part) { return !edit_of(part).visible; };
+    if (std::ranges::all_of(entry_.parts, is_hidden)) return set_toml(table_, "hidden", true);
+    for (const Entry::Part part : entry_.parts) {
+      if (is_hidden(part)) set_toml(new_parts_[part.number], "hidden", true);
     }
   }
-  return fmt::format("{}", fmt::join(names, ", "));
+
+  // What the file says of rounding counts no more where the view has taken it away.
+  [[nodiscard]] std::optional<RoundingSettings> rounding_of(Entry::Part part) const {
+    if (edit_of(part).rounding) return edit_of(part).rounding;
+    const bool file_says = model_.scene.objects[part.index].rounding.has_value() ||
+                           (!model_.is_scene_file && model_.has_own_rounding);
+    return file_says ? std::optional(edits_.rounding) : std::nullopt;
+  }
+
+  // In full, because what it leaves out would come from the view's [round].
+  void write_rounding() {
+    erase_toml(table_, {"round"});
+    erase_of_own_parts({"round"});
+    const std::optional<RoundingSettings> first = rounding_of(entry_.parts.front());
+    const bool is_common = std::ranges::all_of(
+        entry_.parts, [&](Entry::Part part) { return rounding_of(part) == first; });
+    if (is_common) {
+      if (first) set_toml(table_, "round", make_rounding_table(*first));
+      return;
+    }
+    for (const Entry::Part part : entry_.parts) {
+      if (const auto rounding = rounding_of(part)) {
+        set_toml(new_parts_[part.number], "round", make_rounding_table(*rounding));
+      }
+    }
+  }
+
+  // All parts by their places in the world, which are then exact.
+  void write_places() {
+    erase_toml(table_, {"translate", "rotate", "scale", "matrix", "key"});
+    erase_of_own_parts({"translate", "rotate", "scale", "matrix"});
+    if (is_shape() || is_sole_part_at_origin()) {
+      set_toml(table_, "matrix", rows_of(entry_.parts.front()));
+      return;
+    }
+    for (const Entry::Part part : entry_.parts) {
+      set_toml(new_parts_[part.number], "matrix", rows_of(part));
+    }
+  }
+
+  [[nodiscard]] TomlArray rows_of(Entry::Part part) const {
+    return make_matrix_rows(edit_of(part).world_from_object);
+  }
+  // Of a scene file it is not known where the part lies in its own file.
+  [[nodiscard]] bool is_sole_part_at_origin() const {
+    return !model_.is_scene_file && entry_.parts.size() == 1 &&
+           model_.scene.objects[0].world_from_object == Affine3d{};
+  }
+
+  void erase_of_own_parts(std::initializer_list<std::string_view> keys) {
+    for (TomlValue& part : own_parts_) erase_toml(std::get<TomlTable>(part.data), keys);
+  }
+
+  const ViewModel& model_;
+  const ViewEdits& edits_;
+  const Entry& entry_;
+  TomlTable& table_;
+  TomlArray own_parts_;  // of the scene file: materials and what is hidden stay
+  std::map<std::uint32_t, TomlTable> new_parts_;
+};
+
+TomlArray& objects_of(TomlTable& file) {
+  return std::get<TomlArray>(find_toml(file, "object")->data);
 }
 
-void add_comment_of(std::vector<std::string>& comments, const char* what, const ViewModel& model,
-                    const ViewEdits& edits, bool (*is_meant)(const Object&, const ObjectEdit&)) {
-  const std::string names = names_of(model, edits, is_meant);
-  if (!names.empty()) comments.push_back(fmt::format("not in this file: {}: {}", what, names));
+// It may have been written anew between its loading and the reading of its text.
+TomlTable parse_model_text(const ViewModel& model) {
+  TomlTable file = parse_toml(model.text, model.name);
+  const TomlValue* objects = find_toml(file, "object");
+  const auto* array = objects == nullptr ? nullptr : std::get_if<TomlArray>(&objects->data);
+  const std::uint32_t last = model.scene.objects.back().origin.entry;
+  if (array == nullptr || array->size() <= last) {
+    throw Error(Error::Kind::input, model.name,
+                "has changed while it was opened, so that it can't be saved; open it again");
+  }
+  return file;
 }
 
-std::vector<std::string> first_comments(const ViewModel& model, const ViewEdits& edits) {
+void write_objects(const ViewModel& model, const ViewEdits& edits, TomlTable& file) {
+  TomlArray& objects = objects_of(file);
+  for (const auto& [number, entry] : find_entries(model)) {
+    auto& table = std::get<TomlTable>(objects.at(number).data);
+    EntryWriter(model, edits, entry, table).write();
+  }
+}
+
+// One material for all, or what staging has given to parts without one.
+void write_material(const ViewModel& model, const ViewEdits& edits, TomlTable& file) {
+  constexpr const char* kStagedMaterial = "plastic-grey";  // render/staging.h
+  if (edits.material) {
+    TomlTable materials;
+    set_toml(materials, *edits.material,
+             make_material_table(*find_material_preset(*edits.material)));
+    set_toml(file, "material", std::move(materials));
+    for (TomlValue& object : objects_of(file)) {
+      auto& table = std::get<TomlTable>(object.data);
+      set_toml(table, "material", *edits.material);
+      TomlValue* parts = find_toml(table, "part");
+      if (parts == nullptr) continue;
+      for (TomlValue& part : std::get<TomlArray>(parts->data)) {
+        erase_toml(std::get<TomlTable>(part.data), {"material"});
+      }
+    }
+  } else if (!model.is_scene_file && std::ranges::any_of(model.scene.materials, is_unset)) {
+    TomlTable materials;
+    set_toml(materials, "default", make_material_table(*find_material_preset(kStagedMaterial)));
+    set_toml(file, "material", std::move(materials));
+  }
+}
+
+void rename(TomlTable& table, std::string_view key, FileNames& names) {
+  TomlValue* value = find_toml(table, key);
+  if (value == nullptr) return;
+  if (auto* name = std::get_if<std::string>(&value->data)) *name = names(*name);
+  if (auto* inner = std::get_if<TomlTable>(&value->data)) rename(*inner, "file", names);
+}
+
+// Models and textures.
+void rename_files(TomlTable& file, FileNames& names) {
+  for (TomlValue& object : objects_of(file)) {
+    rename(std::get<TomlTable>(object.data), "file", names);
+  }
+  TomlValue* materials = find_toml(file, "material");
+  if (materials == nullptr) return;
+  for (TomlMember& material : std::get<TomlTable>(materials->data)) {
+    auto& table = std::get<TomlTable>(material.value.data);
+    for (const TomlMember& member : TomlTable(table)) {
+      if (member.key.ends_with("_texture")) rename(table, member.key, names);
+    }
+  }
+}
+
+bool has_keys(const TomlValue& object) {
+  return std::ranges::find(std::get<TomlTable>(object.data), "key", &TomlMember::key) !=
+         std::get<TomlTable>(object.data).end();
+}
+
+TomlTable make_model_table(FileNames& names) {
+  TomlTable object, file;
+  set_toml(object, "file", names.own());
+  set_toml(file, "object", TomlArray{{{}, std::move(object)}});
+  return file;
+}
+
+std::vector<std::string> make_comments(const ViewModel& model, const FileNames& names) {
   std::vector<std::string> comments{"A view of " + model.name + ", saved by arris view.",
                                     "arris render scene.toml -o picture.png"};
-  // Its soft rim is a texture, which this file can't hold.
-  if (edits.ground) comments.back() += " --ground on";
+  if (names.is_relative()) {
+    comments.push_back(model.is_scene_file
+                           ? "Save it beside " + model.name + ", whose files it names."
+                           : "Save it beside " + model.name + ", which it shows.");
+  }
   return comments;
 }
 
-void add_hidden(std::vector<std::string>& comments, const ViewModel& model,
-                const ViewEdits& edits) {
-  add_comment_of(comments, "these parts were hidden", model, edits,
-                 [](const Object&, const ObjectEdit& edit) { return !edit.visible; });
-}
-
-std::string write_model(const ViewModel& model, const ViewEdits& edits, const Scene& staged) {
-  std::vector<std::string> comments = first_comments(model, edits);
-  WrittenObject object;
-  object.file = model.name;
-  if (model.file.empty()) {
-    comments.push_back("Save it beside " + model.name + ", which it shows.");
-  } else {
-    object.file = std::filesystem::absolute(model.file).lexically_normal().string();
+void check_model(const ViewModel& model, const ViewEdits& edits) {
+  if (model.file.empty() && (model.is_scene_file || !fs::path(model.name).has_extension())) {
+    throw Error(Error::Kind::input, model.name,
+                "came through a pipe, so that a scene file can't name it; open it as a file");
   }
-  if (const auto move = common_move(model, edits)) {
-    object.world_from_file = *move;
-  } else {
-    add_comment_of(comments, "these parts were moved", model, edits, is_moved);
+  if (std::ranges::none_of(edits.objects, &ObjectEdit::visible)) {
+    throw Error(Error::Kind::input, "",
+                "all objects are hidden, and a scene file needs one to show; show one");
   }
-  const auto rounding = common_of(model, edits, [&](const Object& o, const ObjectEdit& edit) {
-    return explicit_rounding(edits, o, edit);
-  });
-  if (rounding) {
-    object.rounding = *rounding;
-  } else {
-    add_comment_of(comments, "these parts have a radius of their own", model, edits,
-                   [](const Object&, const ObjectEdit& edit) { return edit.rounding.has_value(); });
-  }
-  add_hidden(comments, model, edits);
-  // Staging has given the file's own materials to what has some.
-  const auto is_staged = [](const Material& m) { return m.name == kStagedMaterial; };
-  const std::size_t own = model.scene.materials.size();
-  const auto first = staged.materials.begin(), last = first + std::ptrdiff_t(own);
-  if (edits.material) {
-    object.material = find_material_preset(*edits.material);
-  } else if (std::all_of(first, last, is_staged)) {
-    object.material = find_material_preset(kStagedMaterial);
-  } else if (std::any_of(first, last, is_staged)) {
-    comments.push_back("not in this file: parts without a material of their own were " +
-                       std::string(kStagedMaterial));
-  }
-  return write_toml_scene(staged, {&object, 1}, comments);
-}
-
-// Whether a line of a scene file begins a part that the view has its own of. Headers only.
-bool is_replaced(std::string_view name) {
-  constexpr std::array<std::string_view, 8> kParts{
-      "image", "camera", "camera.key", "environment", "light", "light.key", "round", "animation"};
-  return std::ranges::find(kParts, name) != kParts.end();
-}
-
-std::string trimmed(std::string_view text) {
-  const std::size_t first = text.find_first_not_of(" \t\r[]");
-  if (first == std::string_view::npos) return "";
-  const std::size_t last = text.find_last_not_of(" \t\r[]");
-  return std::string(text.substr(first, last - first + 1));
-}
-
-// The file's own lines without those parts, whether they are tables or keys at the top.
-std::string kept_lines(std::string_view file) {
-  std::string out;
-  std::istringstream lines{std::string(file)};
-  bool in_table = false, dropped = false;
-  for (std::string line; std::getline(lines, line);) {
-    const std::size_t first = line.find_first_not_of(" \t");
-    const bool is_header = first != std::string::npos && line[first] == '[';
-    if (is_header) {
-      in_table = true;
-      dropped = is_replaced(trimmed(std::string_view(line).substr(0, line.find('#'))));
-    } else if (!in_table) {
-      dropped = is_replaced(trimmed(std::string_view(line).substr(0, line.find('=')))) ||
-                trimmed(std::string_view(line).substr(0, line.find('='))) == "up";
-    }
-    if (!dropped) out += line + "\n";
-  }
-  return out;
-}
-
-// Objects and materials stay as the scene file has them, all else is the view's.
-std::string write_changed_scene(const ViewModel& model, const ViewEdits& edits,
-                                const Scene& staged) {
-  std::vector<std::string> comments = first_comments(model, edits);
-  comments.push_back("Save it beside " + model.name + ", whose files it names.");
-  add_comment_of(comments, "these objects were moved", model, edits, is_moved);
-  add_hidden(comments, model, edits);
-  add_comment_of(comments, "these objects got a radius of their own", model, edits,
-                 [](const Object&, const ObjectEdit& edit) { return edit.has_edited_radius; });
-  if (edits.material) comments.push_back("not in this file: all was " + *edits.material);
-  const std::vector<std::uint8_t> bytes = read_file_bytes(model.file, kMostSceneFileBytes);
-  const std::string own = kept_lines({reinterpret_cast<const char*>(bytes.data()), bytes.size()});
-  // Keys at the top of the file come before all tables.
-  const std::size_t first_table = own.find("\n[");
-  const bool has_top = !own.starts_with("[") && first_table != std::string::npos;
-  const std::string top = has_top ? own.substr(0, first_table + 1) : "";
-  std::string text = write_toml_scene(staged, {}, comments);
-  const std::size_t tables = text.find("\n[");
-  text.insert(tables + 1, top);
-  return text + "\n" + own.substr(top.size());
 }
 
 }  // namespace
 
 std::string make_scene_file(const ViewModel& model, const ViewEdits& edits) {
-  const Scene staged = stage_view(model, edits).scene;
-  if (!model.is_scene_file) return write_model(model, edits, staged);
-  if (!model.file.empty()) return write_changed_scene(model, edits, staged);
-  throw Error(Error::Kind::input, model.name,
-              "came through a pipe, so that its objects' files are not known; open it as a file");
+  check_model(model, edits);
+  FileNames names(model);
+  TomlTable file;
+  if (model.is_scene_file) {
+    file = parse_model_text(model);
+    if (edits.material) erase_toml(file, {"material"});
+    rename_files(file, names);
+  } else {
+    file = make_model_table(names);
+  }
+  write_objects(model, edits, file);
+  write_material(model, edits, file);
+  Scene staged = stage_view(model, edits).scene;
+  if (staged.environment) {
+    if (auto* map = std::get_if<HdrEnvironment>(&*staged.environment)) map->name = names(map->name);
+  }
+  TomlTable out = make_scene_table(staged);
+  for (const char* key : {"animation", "material", "object"}) {
+    TomlValue* own = find_toml(file, key);
+    const bool moves = std::ranges::any_of(objects_of(file), has_keys);
+    if (own != nullptr && (moves || key != std::string_view("animation"))) {
+      set_toml(out, key, own->data);
+    }
+  }
+  return write_scene_file(out, make_comments(model, names));
 }
 
 }  // namespace arris::view

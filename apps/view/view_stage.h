@@ -25,6 +25,9 @@ struct ViewModel {
   std::string name;            // to show
   std::filesystem::path file;  // empty: it came through a pipe
   bool is_scene_file = false;
+  std::string text;  // of a scene file, as it was opened
+  bool has_own_rounding =
+      false;           // its file says how objects are rounded that say nothing themselves
   Scene scene;         // with image settings and rounding as options ask for; not staged
   StageOptions stage;  // lighting, ground, material and camera that options ask for
   EdgePointShader shader = EdgePointShader::gi;

@@ -3,45 +3,61 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
+#include <initializer_list>
+#include <limits>
 #include <string_view>
 #include <utility>
 #include <variant>
 #include <vector>
 
+#include "base/utf8_text.h"
+#include "io/toml_writer.h"
+
 namespace arris {
 namespace {
 
-std::string text(std::string_view value) {
-  std::string out = "\"";
-  for (const char c : value) {
-    if (c == '"' || c == '\\') {
-      out += '\\';
-      out += c;
-    } else if (static_cast<unsigned char>(c) < ' ' || c == '\x7f') {
-      out += fmt::format("\\u{:04X}", unsigned(static_cast<unsigned char>(c)));
-    } else {
-      out += c;
+// A float as the double of its shortest decimal digits, which is read back as the same float.
+double shortest(float value) {
+  const std::string digits = fmt::format("{}", value);
+  double out = 0;
+  std::from_chars(digits.data(), digits.data() + digits.size(), out);
+  return out;
+}
+double shortest(double value) {
+  return value;
+}
+
+TomlData text(std::string_view value) {
+  return std::string(value);
+}
+
+template <class T>
+TomlData vector(Vec3<T> v) {
+  TomlArray array;
+  for (const T x : {v.x, v.y, v.z}) array.push_back({{}, shortest(x)});
+  return array;
+}
+
+TomlTable table(std::initializer_list<std::pair<const char*, TomlData>> members) {
+  TomlTable out;
+  for (const auto& [key, data] : members) set_toml(out, key, data);
+  return out;
+}
+
+// Of angles that come from degrees some that give the same radians; few others have any.
+double exact_degrees(double angle) {
+  const double deg = degrees(angle), rounded = std::round(deg * 1e9) / 1e9;
+  if (radians(rounded) == angle) return rounded;
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  for (const double away : {-kInfinity, kInfinity}) {
+    double near = deg;
+    for (int i = 0; i < 4; ++i, near = std::nextafter(near, away)) {
+      if (radians(near) == angle) return near;
     }
   }
-  return out + "\"";
-}
-
-// The shortest that is read back as the same number.
-template <class T>
-std::string number(T value) {
-  return fmt::format("{}", value == 0 ? T(0) : value);
-}
-
-template <class T>
-std::string vector(Vec3<T> v) {
-  return fmt::format("[{}, {}, {}]", number(v.x), number(v.y), number(v.z));
-}
-
-// Angles that were read as degrees are written as the same degrees.
-std::string degrees_text(double angle) {
-  const double deg = degrees(angle), rounded = std::round(deg * 1e9) / 1e9;
-  return number(radians(rounded) == angle ? rounded : deg);
+  return deg;
 }
 
 const char* name_of(RoundMethod method) {
@@ -82,105 +98,134 @@ const char* name_of(ImageSettings::Filter filter) {
   return "blackman_harris";
 }
 
-struct RadiusText {
-  std::string operator()(AutoRadius) const { return "\"auto\""; }
-  std::string operator()(double radius) const { return number(radius); }
-  std::string operator()(PercentOfInradius radius) const {
-    return fmt::format("\"{}%\"", number(radius.percent));
+struct RadiusData {
+  TomlData operator()(AutoRadius) const { return text("auto"); }
+  TomlData operator()(double radius) const { return radius; }
+  TomlData operator()(PercentOfInradius radius) const { return fmt::format("{}%", radius.percent); }
+};
+
+// Scene files take one whole turn each way.
+double rotation_degrees(double angle) {
+  return exact_degrees(std::abs(angle) > 2 * kPi ? std::remainder(angle, 2 * kPi) : angle);
+}
+
+// Colours may be at most 1e9, strengths more: a power of two, so that nothing is rounded.
+void set_emission(TomlTable& out, Rgb emission, const char* strength) {
+  constexpr float kMostColor = 1e9F;
+  constexpr double kMostStrength = 1e12;
+  double scale = 1;
+  while (std::max({emission.x, emission.y, emission.z}) > kMostColor && scale < kMostStrength / 2) {
+    emission *= 0.5F;
+    scale *= 2;
+  }
+  set_toml(out, "color", vector(emission));
+  if (scale != 1) set_toml(out, strength, scale);
+}
+
+struct EnvironmentTable {
+  TomlTable operator()(const ConstantEnvironment& e) const {
+    TomlTable out = table({{"type", text("constant")}});
+    set_emission(out, e.radiance, "strength");
+    return out;
+  }
+  TomlTable operator()(const SkyEnvironment& e) const {
+    return table({{"type", text("sky")},
+                  {"sun_direction", vector(e.sun_direction)},
+                  {"turbidity", e.turbidity},
+                  {"strength", e.strength},
+                  {"sun", e.sun}});
+  }
+  TomlTable operator()(const HdrEnvironment& e) const {
+    return table({{"type", text("hdr")},
+                  {"file", text(e.name)},
+                  {"strength", e.strength},
+                  {"rotation", rotation_degrees(e.rotation)}});
+  }
+  TomlTable operator()(const StudioEnvironment& e) const {
+    return table({{"type", text("studio")},
+                  {"strength", e.strength},
+                  {"rotation", rotation_degrees(e.rotation)}});
   }
 };
 
-// key = value, one of a table each.
-using Members = std::vector<std::pair<const char*, std::string>>;
+struct LightTable {
+  TomlTable operator()(const PointLight& l) const {
+    TomlTable out = table({{"type", text("point")}, {"position", vector(l.position)}});
+    set_emission(out, l.intensity, "intensity");
+    return out;
+  }
+  TomlTable operator()(const SpotLight& l) const {
+    TomlTable out = table({{"type", text("spot")},
+                           {"position", vector(l.position)},
+                           {"direction", vector(l.direction)},
+                           {"inner_angle", exact_degrees(l.inner_angle)},
+                           {"outer_angle", exact_degrees(l.outer_angle)}});
+    set_emission(out, l.intensity, "intensity");
+    return out;
+  }
+  TomlTable operator()(const DirectionalLight& l) const {
+    TomlTable out = table({{"type", text("directional")}, {"direction", vector(l.direction)}});
+    set_emission(out, l.irradiance, "irradiance");
+    return out;
+  }
+  TomlTable operator()(const AreaLight& l) const {
+    TomlTable out = table({{"type", text("area")},
+                           {"corner", vector(l.corner)},
+                           {"edge_u", vector(l.edge_u)},
+                           {"edge_v", vector(l.edge_v)},
+                           {"visible", l.visible_to_camera}});
+    set_emission(out, l.radiance, "radiance");
+    return out;
+  }
+};
 
-Members rounding_members(const RoundingSettings& rounding) {
-  Members members{{"method", text(name_of(rounding.method))},
-                  {"radius", std::visit(RadiusText{}, rounding.radius)},
-                  {"edges", text(name_of(rounding.edges))},
-                  {"min_angle", degrees_text(rounding.min_angle)}};
+TomlTable make_image_table(const ImageSettings& image) {
+  const TomlArray size{{{}, std::int64_t(image.width_px)}, {{}, std::int64_t(image.height_px)}};
+  return table({{"size", size},
+                {"samples", std::int64_t(image.samples_per_pixel)},
+                {"max_depth", std::int64_t(image.max_depth)},
+                {"exposure", image.exposure},
+                {"filter", text(name_of(image.filter))}});
+}
+
+// Without what would end the line, or is not UTF-8.
+std::string comment_line(std::string text) {
+  const bool is_text = is_utf8(text);
+  for (char& c : text) {
+    const auto byte = static_cast<unsigned char>(c);
+    if (byte < ' ' || byte == 0x7f) c = ' ';
+    if (byte > 0x7f && !is_text) c = '?';
+  }
+  return "# " + text + "\n";
+}
+
+}  // namespace
+
+TomlTable make_rounding_table(const RoundingSettings& rounding) {
+  TomlTable out = table({{"method", text(name_of(rounding.method))},
+                         {"radius", std::visit(RadiusData{}, rounding.radius)},
+                         {"edges", text(name_of(rounding.edges))},
+                         {"min_angle", exact_degrees(rounding.min_angle)}});
   if (rounding.method == RoundMethod::mesh) {
-    members.emplace_back("subdivisions", number(rounding.subdivisions));
+    set_toml(out, "subdivisions", std::int64_t(rounding.subdivisions));
   }
   if (rounding.method == RoundMethod::shader) {
     const BevelShaderSettings& shader = rounding.shader;
-    if (shader.delta) members.emplace_back("delta", number(*shader.delta));
-    if (shader.perturb) members.emplace_back("perturb", number(*shader.perturb));
-    members.emplace_back("divisions", number(shader.divisions));
+    if (shader.delta) set_toml(out, "delta", *shader.delta);
+    if (shader.perturb) set_toml(out, "perturb", *shader.perturb);
+    set_toml(out, "divisions", std::int64_t(shader.divisions));
   }
-  return members;
-}
-
-std::string inline_table(const Members& members) {
-  std::string out = "{ ";
-  for (const auto& [key, value] : members) {
-    out += fmt::format("{}{} = {}", out.size() > 2 ? ", " : "", key, value);
-  }
-  return out + " }";
-}
-
-std::string table(const std::string& header, const Members& members) {
-  std::string out = "\n" + header + "\n";
-  for (const auto& [key, value] : members) out += fmt::format("{} = {}\n", key, value);
   return out;
 }
 
-struct EnvironmentMembers {
-  Members operator()(const ConstantEnvironment& e) const {
-    return {{"type", text("constant")}, {"color", vector(e.radiance)}};
-  }
-  Members operator()(const SkyEnvironment& e) const {
-    return {{"type", text("sky")},
-            {"sun_direction", vector(e.sun_direction)},
-            {"turbidity", number(e.turbidity)},
-            {"strength", number(e.strength)},
-            {"sun", e.sun ? "true" : "false"}};
-  }
-  Members operator()(const HdrEnvironment& e) const {
-    return {{"type", text("hdr")},
-            {"file", text(e.name)},
-            {"strength", number(e.strength)},
-            {"rotation", degrees_text(std::remainder(e.rotation, 2 * kPi))}};
-  }
-  Members operator()(const StudioEnvironment& e) const {
-    return {{"type", text("studio")},
-            {"strength", number(e.strength)},
-            {"rotation", degrees_text(std::remainder(e.rotation, 2 * kPi))}};
-  }
-};
-
-struct LightMembers {
-  Members operator()(const PointLight& l) const {
-    return {
-        {"type", text("point")}, {"position", vector(l.position)}, {"color", vector(l.intensity)}};
-  }
-  Members operator()(const SpotLight& l) const {
-    return {{"type", text("spot")},
-            {"position", vector(l.position)},
-            {"direction", vector(l.direction)},
-            {"color", vector(l.intensity)},
-            {"inner_angle", degrees_text(l.inner_angle)},
-            {"outer_angle", degrees_text(l.outer_angle)}};
-  }
-  Members operator()(const DirectionalLight& l) const {
-    return {{"type", text("directional")},
-            {"direction", vector(l.direction)},
-            {"color", vector(l.irradiance)}};
-  }
-  Members operator()(const AreaLight& l) const {
-    return {{"type", text("area")},        {"corner", vector(l.corner)},
-            {"edge_u", vector(l.edge_u)},  {"edge_v", vector(l.edge_v)},
-            {"color", vector(l.radiance)}, {"visible", l.visible_to_camera ? "true" : "false"}};
-  }
-};
-
-Members material_members(const Material& m) {
+TomlTable make_material_table(const Material& m) {
   const Material plain;
-  Members members{{"base_color", vector(m.base_color)}};
+  TomlTable out = table({{"base_color", vector(m.base_color)}});
   const auto add = [&](const char* key, float value, float usual) {
-    if (value != usual) members.emplace_back(key, number(value));
+    if (value != usual) set_toml(out, key, shortest(value));
   };
   const auto add_color = [&](const char* key, Rgb value, Rgb usual) {
-    if (!(value == usual)) members.emplace_back(key, vector(value));
+    if (!(value == usual)) set_toml(out, key, vector(value));
   };
   add("metallic", m.metallic, plain.metallic);
   add("roughness", m.roughness, plain.roughness);
@@ -192,76 +237,48 @@ Members material_members(const Material& m) {
   add("clearcoat_roughness", m.clearcoat_roughness, plain.clearcoat_roughness);
   add_color("emission", m.emission, plain.emission);
   add("opacity", m.opacity, plain.opacity);
-  if (m.alpha_cutoff) members.emplace_back("alpha_cutoff", number(*m.alpha_cutoff));
-  if (m.glossy_mix) members.emplace_back("glossy_mix", number(*m.glossy_mix));
-  return members;
+  if (m.alpha_cutoff) set_toml(out, "alpha_cutoff", shortest(*m.alpha_cutoff));
+  if (m.glossy_mix) set_toml(out, "glossy_mix", shortest(*m.glossy_mix));
+  return out;
 }
 
-std::string material_name(const Material& material) {
-  return material.name.empty() ? "material" : material.name;
+TomlArray make_matrix_rows(const Affine3d& m) {
+  const auto& [x, y, z] = m.linear;
+  const Vec3d& t = m.translation;
+  const auto row = [](double a, double b, double c, double d) {
+    return TomlValue{{}, TomlArray{{{}, a}, {{}, b}, {{}, c}, {{}, d}}};
+  };
+  return {row(x.x, y.x, z.x, t.x), row(x.y, y.y, z.y, t.y), row(x.z, y.z, z.z, t.z),
+          row(0, 0, 0, 1)};
 }
 
-Members object_members(const WrittenObject& object) {
-  Members members{{"file", text(object.file)}};
-  if (!object.name.empty()) members.emplace_back("name", text(object.name));
-  if (object.material) members.emplace_back("material", text(material_name(*object.material)));
-  if (object.rounding) {
-    members.emplace_back("round", inline_table(rounding_members(*object.rounding)));
-  }
-  const Affine3d& m = object.world_from_file;
-  if (!(m == Affine3d{})) {
-    const auto& [x, y, z] = m.linear;
-    const Vec3d& t = m.translation;
-    const auto row = [](double a, double b, double c, double d) {
-      return fmt::format("[{}, {}, {}, {}]", number(a), number(b), number(c), number(d));
-    };
-    members.emplace_back("matrix",
-                         fmt::format("[{}, {}, {}, [0, 0, 0, 1]]", row(x.x, y.x, z.x, t.x),
-                                     row(x.y, y.y, z.y, t.y), row(x.z, y.z, z.z, t.z)));
-  }
-  return members;
-}
-
-}  // namespace
-
-std::string write_toml_scene(const Scene& scene, std::span<const WrittenObject> objects,
-                             std::span<const std::string> comments) {
-  std::string out;
-  for (std::string comment : comments) {
-    std::ranges::replace_if(
-        comment, [](char c) { return static_cast<unsigned char>(c) < ' '; }, ' ');
-    out += "# " + comment + "\n";
-  }
-  out += fmt::format("up = {}\n", vector(scene.up));
-  const ImageSettings& image = scene.image;
-  out += table("[image]", {{"size", fmt::format("[{}, {}]", image.width_px, image.height_px)},
-                           {"samples", number(image.samples_per_pixel)},
-                           {"max_depth", number(image.max_depth)},
-                           {"exposure", number(image.exposure)},
-                           {"filter", text(name_of(image.filter))}});
+TomlTable make_scene_table(const Scene& scene) {
+  TomlTable out = table({{"up", vector(scene.up)}, {"image", make_image_table(scene.image)}});
   if (scene.camera) {
-    out += table("[camera]", {{"position", vector(scene.camera->position)},
-                              {"target", vector(scene.camera->target)},
-                              {"up", vector(scene.camera->up)},
-                              {"fov", number(scene.camera->fov_deg)}});
+    set_toml(out, "camera",
+             table({{"position", vector(scene.camera->position)},
+                    {"target", vector(scene.camera->target)},
+                    {"up", vector(scene.camera->up)},
+                    {"fov", scene.camera->fov_deg}}));
   }
   if (scene.environment) {
-    out += table("[environment]", std::visit(EnvironmentMembers{}, *scene.environment));
+    set_toml(out, "environment", std::visit(EnvironmentTable{}, *scene.environment));
   }
-  for (const Light& light : scene.lights) {
-    out += table("[[light]]", std::visit(LightMembers{}, light));
+  TomlArray lights;
+  for (const Light& light : scene.lights) lights.push_back({{}, std::visit(LightTable{}, light)});
+  if (!lights.empty()) set_toml(out, "light", std::move(lights));
+  if (scene.rounding) set_toml(out, "round", make_rounding_table(*scene.rounding));
+  if (scene.ground) {
+    set_toml(out, "ground",
+             table({{"center", vector(scene.ground->center)}, {"radius", scene.ground->radius}}));
   }
-  if (scene.rounding) out += table("[round]", rounding_members(*scene.rounding));
-  std::vector<std::string> written;
-  for (const WrittenObject& object : objects) {
-    if (!object.material) continue;
-    const std::string name = material_name(*object.material);
-    if (std::ranges::find(written, name) != written.end()) continue;
-    written.push_back(name);
-    out += table(fmt::format("[material.{}]", text(name)), material_members(*object.material));
-  }
-  for (const WrittenObject& object : objects) out += table("[[object]]", object_members(object));
   return out;
+}
+
+std::string write_scene_file(const TomlTable& scene, std::span<const std::string> comments) {
+  std::string out;
+  for (const std::string& comment : comments) out += comment_line(comment);
+  return out + write_toml(scene);
 }
 
 }  // namespace arris

@@ -1,29 +1,26 @@
-// scene_writer.h — scene files (.toml) from scenes
-// What       picture, camera, environment, lights, rounding and materials of a scene, and its objects by the files that
-//            they came from, as docs/scene-format.md has it
-// Guarantee  what is read back has the same numbers; all of the scene that the format can't say is listed as comments
-// Limits     meshes, textures and maps of environments are not written: objects name files
+// scene_writer.h — parts of scene files (.toml) from parts of scenes, as docs/scene-format.md has them
+// Guarantee  what is read back has the same numbers, but for the last digit of angles that were never in degrees
+//            (tests/io/scene_writer_test.cpp)
+// Limits     meshes, and textures of materials, are not written: scene files name files
 #pragma once
 
-#include <optional>
 #include <span>
 #include <string>
 
 #include "arris/scene.h"
+#include "io/toml_document.h"
 
 namespace arris {
 
-// One [[object]].
-struct WrittenObject {
-  std::string file;                  // as it is to stand in the file
-  std::string name;                  // empty: the file's
-  std::optional<Material> material;  // in place of the file's own; without textures
-  std::optional<RoundingSettings> rounding;
-  Affine3d world_from_file;
-};
+// up, image, camera, environment, lights, rounding and ground; neither objects nor what moves. An environment's map has
+// the name that the scene has for it.
+TomlTable make_scene_table(const Scene& scene);
 
-// comments: one line each, at the top. The scene's own objects, meshes and materials are not looked at.
-std::string write_toml_scene(const Scene& scene, std::span<const WrittenObject> objects,
-                             std::span<const std::string> comments);
+TomlTable make_rounding_table(const RoundingSettings& rounding);
+TomlTable make_material_table(const Material& material);
+TomlArray make_matrix_rows(const Affine3d& matrix);
+
+// comments: one line each, at the top.
+std::string write_scene_file(const TomlTable& scene, std::span<const std::string> comments);
 
 }  // namespace arris

@@ -359,6 +359,18 @@ TEST_F(ViewServerTest, saves_the_picture_and_the_scene) {
   EXPECT_EQ(test::fetch(port_, Request(with_token("/beam.png"))).status, 404);
 }
 
+TEST_F(ViewServerTest, says_why_there_is_no_scene_to_save) {
+  start();
+  auto socket = look();
+  for (const int id : {0, 1}) {
+    socket->send({{"type", "object"}, {"seq", id + 1}, {"id", id}, {"visible", false}});
+  }
+  read_until_seq(*socket, 2);
+  const auto scene = test::fetch(port_, Request(with_token("/scene.toml")));
+  EXPECT_EQ(scene.status, 409);
+  EXPECT_THAT(scene.body, HasSubstr("all objects are hidden"));
+}
+
 TEST_F(ViewServerTest, makes_beam_pictures) {
   start();
   auto socket = look();

@@ -5,8 +5,6 @@
 #include "arris/error.h"
 #include "arris/render.h"
 #include "geometry/shapes.h"
-#include "io/toml_scene.h"
-#include "view/scene_file.h"
 
 namespace arris::view {
 namespace {
@@ -153,42 +151,6 @@ TEST(ViewStage, framed_views_show_all_from_where_they_are_asked_for) {
   EXPECT_NEAR(length(direction(FrameView::From::right) - Vec3d(-1, 0, 0)), 0, 1e-9);
   const Vec3d here = normalize(edits.camera.target - edits.camera.position);
   EXPECT_NEAR(length(direction(FrameView::From::here) - here), 0, 1e-6);
-}
-
-TEST(SceneFile, is_read_back_as_the_scene_that_is_shown) {
-  const ViewModel model = make_model(1);
-  ViewEdits edits = first_edits(model);
-  edits.ground = false;
-  apply_message(model, SetLight{LightChoice::sky, 2.5, 30.0}, edits);
-  apply_message(model, SetMaterial{"brass"}, edits);
-  SetObject object;
-  object.world_from_object = Affine3d{{{0, 1, 0}, {-1, 0, 0}, {0, 0, 1}}, {4, 5, 6.1}};
-  object.radius = Radius(PercentOfInradius{12.5});
-  apply_message(model, object, edits);
-  const Scene shown = stage_view(model, edits).scene;
-  const Scene read = read_toml_scene(make_scene_file(model, edits), "saved.toml", "/",
-                                     [&](const std::filesystem::path&) { return model.scene; });
-  EXPECT_EQ(read.environment, shown.environment);
-  EXPECT_EQ(read.rounding, shown.rounding);
-  EXPECT_EQ(read.camera->position, shown.camera->position);
-  EXPECT_EQ(read.camera->up, shown.camera->up);
-  EXPECT_EQ(read.image.width_px, shown.image.width_px);
-  EXPECT_EQ(read.image.filter, shown.image.filter);
-  ASSERT_EQ(read.objects.size(), 1U);
-  EXPECT_EQ(read.objects[0].world_from_object, shown.objects[0].world_from_object);
-  EXPECT_EQ(read.objects[0].rounding, shown.objects[0].rounding);
-  const Material& material = read.materials[read.objects[0].material.index];
-  EXPECT_EQ(material.base_color, shown.materials[0].base_color);
-  EXPECT_EQ(material.metallic, shown.materials[0].metallic);
-}
-
-TEST(SceneFile, says_what_it_lacks) {
-  const ViewModel model = make_model(3);
-  ViewEdits edits = first_edits(model);
-  edits.objects[1].visible = false;
-  const std::string text = make_scene_file(model, edits);
-  EXPECT_NE(text.find("# not in this file: these parts were hidden: box 1"), std::string::npos);
-  EXPECT_NE(text.find("--ground on"), std::string::npos);
 }
 
 }  // namespace

@@ -1,0 +1,491 @@
+#include "view/scene_file.h"
+
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <filesystem>
+#include <random>
+#include <string>
+#include <string_view>
+#include <tuple>
+#include <variant>
+#include <vector>
+
+#include "arris/error.h"
+#include "arris/io.h"
+#include "arris/render.h"
+#include "io/gltf_test_file.h"
+#include "program/run_program.h"
+#include "scene/material_presets.h"
+#include "support/temporary_folder.h"
+#include "view/view_stage.h"
+
+namespace arris::view {
+namespace {
+
+using test::TemporaryFolder;
+using test::write_text;
+using testing::HasSubstr;
+using testing::Not;
+
+// As the program opens it.
+ViewModel open(const std::filesystem::path& file) {
+  ViewModel model;
+  model.name = file.filename().string();
+  model.file = file;
+  model.scene = load_scene(file);
+  model.is_scene_file = file.extension() == ".toml";
+  if (model.is_scene_file) {
+    model.text = test::read_text(file);
+    model.stage.source = StageOptions::Source::scene_file;
+  }
+  model.has_own_rounding = model.scene.rounding.has_value();
+  if (!model.is_scene_file && !model.scene.rounding) {
+    model.scene.rounding.emplace().method = RoundMethod::exact;
+  }
+  return model;
+}
+
+// Saved elsewhere, and as `arris render` gets it.
+Scene save_and_render(const ViewModel& model, const ViewEdits& edits) {
+  const TemporaryFolder downloads;
+  write_text(downloads / "scene.toml", make_scene_file(model, edits));
+  Scene scene = load_scene(downloads / "scene.toml");
+  StageOptions options;
+  options.source = StageOptions::Source::scene_file;
+  stage_model(scene, options);
+  EXPECT_TRUE(validate_scene(scene).empty());
+  return scene;
+}
+
+auto look_of(const Material& m) {
+  return std::tuple(m.base_color, m.metallic, m.roughness, m.ior, m.specular, m.specular_color,
+                    m.transmission, m.clearcoat, m.clearcoat_roughness, m.emission, m.opacity,
+                    m.alpha_cutoff, m.glossy_mix);
+}
+
+void expect_same_material(const Scene& a, MaterialId in_a, const Scene& b, MaterialId in_b) {
+  const Material &one = a.materials[in_a.index], &other = b.materials[in_b.index];
+  EXPECT_EQ(look_of(one), look_of(other)) << one.name << " and " << other.name;
+  ASSERT_EQ(one.base_color_texture.has_value(), other.base_color_texture.has_value());
+  if (!one.base_color_texture) return;
+  EXPECT_TRUE(a.textures[one.base_color_texture->index].texels ==
+              b.textures[other.base_color_texture->index].texels);
+}
+
+void expect_same_object(const Scene& a, const Object& in_a, const Scene& b, const Object& in_b) {
+  EXPECT_EQ(in_a.world_from_object, in_b.world_from_object) << in_a.name;
+  EXPECT_EQ(in_a.rounding.value_or(*a.rounding), in_b.rounding.value_or(*b.rounding)) << in_a.name;
+  const Mesh &one = a.meshes[in_a.mesh.index], &other = b.meshes[in_b.mesh.index];
+  EXPECT_EQ(one.positions, other.positions) << in_a.name;
+  for (std::size_t t = 0; t < one.triangles.size(); ++t) {
+    const auto material = [&](const Mesh& mesh, const Object& object) {
+      return mesh.triangle_materials.empty() ? object.material : mesh.triangle_materials[t];
+    };
+    expect_same_material(a, material(one, in_a), b, material(other, in_b));
+  }
+}
+
+struct LightNumbers {
+  using Numbers = std::vector<double>;
+  static void add(Numbers& out, Vec3d v) { out.insert(out.end(), {v.x, v.y, v.z}); }
+  Numbers operator()(const PointLight& l) const {
+    Numbers out{0};
+    add(out, l.position);
+    add(out, Vec3d(l.intensity));
+    return out;
+  }
+  Numbers operator()(const SpotLight& l) const {
+    Numbers out{1, l.inner_angle, l.outer_angle};
+    add(out, l.position);
+    add(out, l.direction);
+    add(out, Vec3d(l.intensity));
+    return out;
+  }
+  Numbers operator()(const DirectionalLight& l) const {
+    Numbers out{2};
+    add(out, l.direction);
+    add(out, Vec3d(l.irradiance));
+    return out;
+  }
+  Numbers operator()(const AreaLight& l) const {
+    Numbers out{3, double(l.visible_to_camera)};
+    for (const Vec3d v : {l.corner, l.edge_u, l.edge_v, Vec3d(l.radiance)}) add(out, v);
+    return out;
+  }
+};
+
+void expect_saved(const ViewModel& model, const ViewEdits& edits) {
+  const Scene shown = stage_view(model, edits).scene, read = save_and_render(model, edits);
+  EXPECT_EQ(read.up, shown.up);
+  EXPECT_EQ(read.camera->position, shown.camera->position);
+  EXPECT_EQ(read.camera->target, shown.camera->target);
+  EXPECT_EQ(read.camera->up, shown.camera->up);
+  EXPECT_EQ(read.camera->fov_deg, shown.camera->fov_deg);
+  EXPECT_EQ(read.image.width_px, shown.image.width_px);
+  EXPECT_EQ(read.image.height_px, shown.image.height_px);
+  EXPECT_EQ(read.image.samples_per_pixel, shown.image.samples_per_pixel);
+  EXPECT_EQ(read.image.exposure, shown.image.exposure);
+  EXPECT_EQ(read.image.filter, shown.image.filter);
+  EXPECT_EQ(read.rounding, shown.rounding);
+  EXPECT_EQ(read.ground, shown.ground);
+  Environment map = *read.environment;  // its name is that of another folder
+  if (auto* hdr = std::get_if<HdrEnvironment>(&map)) {
+    const auto& own = std::get<HdrEnvironment>(*shown.environment);
+    EXPECT_NEAR(std::cos(hdr->rotation), std::cos(own.rotation), 1e-12);
+    hdr->name = own.name;
+    hdr->rotation = own.rotation;
+  }
+  EXPECT_EQ(map, *shown.environment);
+  ASSERT_EQ(read.lights.size(), shown.lights.size());
+  for (std::size_t i = 0; i < shown.lights.size(); ++i) {
+    EXPECT_EQ(std::visit(LightNumbers{}, read.lights[i]),
+              std::visit(LightNumbers{}, shown.lights[i]));
+  }
+  ASSERT_EQ(read.objects.size(), shown.objects.size());
+  for (std::size_t i = 0; i < shown.objects.size(); ++i) {
+    expect_same_object(read, read.objects[i], shown, shown.objects[i]);
+  }
+}
+
+std::string refusal(const ViewModel& model, const ViewEdits& edits) {
+  try {
+    make_scene_file(model, edits);
+  } catch (const Error& error) {
+    EXPECT_EQ(error.kind(), Error::Kind::input);
+    return error.what();
+  }
+  return "(was saved)";
+}
+
+// Three cubes: two in one file, the second with a material; one turned by its node, with a radius of its own.
+void write_models(const TemporaryFolder& folder) {
+  write_text(folder / "cube.stl", test::cube_stl(2));
+  write_text(folder / "paint.mtl", "newmtl red\nKd 0.9 0.1 0.1\n");
+  std::string obj = "mtllib paint.mtl\n";
+  for (int i = 0; i < 2; ++i) {
+    obj += i == 0 ? "o cube\n" : "o cube\nusemtl red\n";
+    for (int corner = 0; corner < 8; ++corner) {
+      obj += fmt::format("v {} {} {}\n", (corner & 1) + 2 * i, corner >> 1 & 1, corner >> 2);
+    }
+    for (const char* face : {"1 3 4 2", "5 6 8 7", "1 2 6 5", "2 4 8 6", "4 3 7 8", "3 1 5 7"}) {
+      std::string line = "f";
+      for (const char* c = face; *c != '\0'; ++c) {
+        if (*c != ' ') line += fmt::format(" {}", *c - '0' + 8 * i);
+      }
+      obj += line + "\n";
+    }
+  }
+  write_text(folder / "two.obj", obj);
+  test::GltfTestFile file;
+  std::vector<Vec3f> corners;
+  for (int corner = 0; corner < 8; ++corner) {
+    corners.emplace_back(float(corner & 1), float(corner >> 1 & 1), float(corner >> 2));
+  }
+  const auto positions = file.add_vec3(corners);
+  const auto indices = file.add_indices({0, 2, 1, 1, 2, 3, 4, 5, 6, 5, 7, 6, 0, 1, 4, 1, 5, 4,
+                                         2, 6, 3, 3, 6, 7, 0, 4, 2, 2, 4, 6, 1, 3, 5, 3, 7, 5});
+  file.add_mesh({{"attributes", {{"POSITION", positions}}}, {"indices", indices}});
+  file.add("nodes", {{"mesh", 0}, {"name", "a"}, {"rotation", {0.6, 0, 0, 0.8}}});
+  file.add("nodes", {{"mesh", 0},
+                     {"name", "b"},
+                     {"translation", {3, 0.1, 0}},
+                     {"extras", {{"arris_radius", "7%"}}}});
+  file.json["asset"]["extras"] = {{"arris_radius", 0.125}};
+  file.json["scenes"] = {{{"nodes", {0, 1}}}};
+  file.json["scene"] = 0;
+  const auto glb = file.glb();
+  write_text(folder / "nodes.glb", {glb.begin(), glb.end()});
+}
+
+// In ways that a reader of lines gets wrong.
+constexpr std::string_view kHostileScene = R"toml(# [[object]] in a comment
+"up" = [0, 0,
+  1]  # ] [camera]
+camera.position = [6, -7, 5]
+camera."fov" = 30
+'camera'.target = [ 1.0, # [image]
+  0.25, 0 ]
+round.radius = "10%" # = "
+image = { size = [320, 200], "samples" = 3, filter = 'tent' }
+  [ material . "a.b \"c\" #" ]
+base_color = [0.1, 0.2, 0.3]
+[[ "object" ]]
+name = """
+[camera]
+position = [9, 9, 9]"""
+shape = "box"
+material = "a.b \"c\" #"
+rotate = [0, 0, 30]
+  [[object.key]]
+  frame = -5
+  [[object.key]]
+  frame = 7
+  translate = [0, 0, 2.5]
+[[light]]
+type = "spot"
+position = [1, 2, 3]
+target = [0.1, 0.2, 0.3]
+color = [0.7, 0.6, 0.1]
+inner_angle = 12.3
+outer_angle = 33.3
+[[object]]
+file = 'two.obj'
+round = 0.03
+scale = 0.7
+  [[object.part]]
+  number = 2
+  round = "none"
+  material = 'other'
+[animation]
+interpolation = "linear"
+[[object]]
+file = "nodes.glb"
+name = 'quotes " and \ and ''
+translate = [-4, 0, 0]
+[material]
+other = { roughness = 0.25 }
+[material.default]
+metallic = 1
+[[light]]
+type = "area"
+position = [3, 3, 3]
+direction = [-1, -1, -0.9]
+radiance = 3e10
+[[object]]
+shape = "sphere"
+hidden = true
+[[object]]
+shape = "cone"
+translate = [0, 3, 0]
+)toml";
+
+std::string hostile_scene() {
+  std::string text(kHostileScene);
+  text.replace(text.find("and ''"), 6, "and '");
+  return text;
+}
+
+std::string with_crlf(const std::string& text) {
+  std::string out;
+  for (const char c : text) out += c == '\n' ? std::string("\r\n") : std::string(1, c);
+  return out;
+}
+
+Affine3d some_place(std::mt19937& random) {
+  std::uniform_real_distribution<double> number(-2, 2);
+  const auto vector = [&] { return Vec3d(number(random), number(random), number(random)); };
+  return {{vector(), vector(), vector()}, vector()};
+}
+
+// Everything that a page can change.
+void change(const ViewModel& model, ViewEdits& edits, std::mt19937& random) {
+  std::uniform_real_distribution<double> number(0.01, 2);
+  const auto pick = [&](std::size_t count) { return random() % count; };
+  const Radius radii[] = {AutoRadius{}, number(random), PercentOfInradius{number(random)}};
+  SetObject object;
+  object.id = std::uint32_t(pick(model.scene.objects.size()));
+  SetRounding rounding;
+  SetCamera camera{edits.camera};
+  switch (pick(9)) {
+    case 0:
+      object.world_from_object = some_place(random);
+      return apply_message(model, object, edits);
+    case 1:
+      object.visible = pick(2) == 0;
+      return apply_message(model, object, edits);
+    case 2:
+      object.radius = radii[pick(3)];
+      return apply_message(model, object, edits);
+    case 3:
+      object.radius.emplace();
+      return apply_message(model, object, edits);
+    case 4:
+      rounding.method =
+          std::array{RoundMethod::none, RoundMethod::exact, RoundMethod::shader}[pick(3)];
+      rounding.radius = radii[pick(3)];
+      rounding.min_angle = radians(90 * number(random));
+      rounding.edges = RoundEdges::both;
+      return apply_message(model, rounding, edits);
+    case 5:
+      return apply_message(
+          model,
+          SetLight{LightChoice(pick(4)), number(random), std::floor(number(random) * 1e3) / 10},
+          edits);
+    case 6:
+      return apply_message(model, pick(2) == 0 ? SetMaterial{"brass"} : SetMaterial{}, edits);
+    case 7:
+      return apply_message(model, SetGround{pick(2) == 0}, edits);
+    default:
+      camera.camera.position = Vec3d(number(random), number(random) + 5, number(random));
+      camera.camera.fov_deg = 10 + number(random);
+      return apply_message(model, camera, edits);
+  }
+}
+
+void expect_saved_whatever_is_changed(const ViewModel& model, unsigned seed) {
+  std::mt19937 random(seed);
+  ViewEdits edits = first_edits(model);
+  expect_saved(model, edits);
+  for (int step = 0; step < 60 && !testing::Test::HasFailure(); ++step) {
+    SCOPED_TRACE(fmt::format("seed {}, step {}", seed, step));
+    if (random() % 10 == 0) edits = first_edits(model);
+    change(model, edits, random);
+    if (std::ranges::any_of(edits.objects, &ObjectEdit::visible)) expect_saved(model, edits);
+  }
+  if (testing::Test::HasFailure()) ADD_FAILURE() << make_scene_file(model, edits);
+}
+
+TEST(SceneFile, of_models_shows_what_the_viewer_shows) {
+  const TemporaryFolder folder;
+  write_models(folder);
+  unsigned seed = 1;
+  for (const char* name : {"cube.stl", "two.obj", "nodes.glb"}) {
+    SCOPED_TRACE(name);
+    expect_saved_whatever_is_changed(open(folder / name), seed++);
+  }
+}
+
+TEST(SceneFile, of_scene_files_shows_what_the_viewer_shows_however_they_are_written) {
+  const TemporaryFolder folder;
+  write_models(folder);
+  unsigned seed = 11;
+  for (const std::string& text : {hostile_scene(), with_crlf(hostile_scene()),
+                                  "\xEF\xBB\xBF" + hostile_scene() + "# no end of line"}) {
+    write_text(folder / "s.toml", text);
+    const ViewModel model = open(folder / "s.toml");
+    ASSERT_EQ(model.scene.objects.size(), 6U);
+    expect_saved_whatever_is_changed(model, seed++);
+  }
+}
+
+TEST(SceneFile, can_be_opened_and_saved_again) {
+  const TemporaryFolder folder;
+  write_models(folder);
+  write_text(folder / "s.toml", hostile_scene());
+  std::mt19937 random(21);
+  ViewModel model = open(folder / "s.toml");
+  for (int time = 0; time < 8; ++time) {
+    ViewEdits edits = first_edits(model);
+    for (int i = 0; i < 3; ++i) change(model, edits, random);
+    edits.objects[0].visible = true;
+    expect_saved(model, edits);
+    write_text(folder / "s.toml", make_scene_file(model, edits));
+    model = open(folder / "s.toml");
+  }
+}
+
+TEST(SceneFile, names_maps_and_textures_where_they_are) {
+  const TemporaryFolder folder;
+  std::filesystem::create_directory(folder / "pictures");
+  Picture picture;
+  picture.color = Image(4, 2, 3);
+  for (std::size_t i = 0; i < picture.color.values.size(); ++i) {
+    picture.color.values[i] = float(i) / 8;
+  }
+  save_picture(picture, folder / "pictures/sky.pfm");
+  save_picture(picture, folder / "pictures/wood.png");
+  write_text(folder / "s.toml", R"(
+environment = { type = "hdr", file = "pictures/sky.pfm", rotation = 300 }
+material.a.base_color_texture = "./pictures/wood.png"
+material.b.base_color_texture = { wrap = "clamp", file = "pictures/../pictures/wood.png" }
+object = [{ shape = "plane", material = "a" }, { shape = "plane", material = "b" }]
+)");
+  const ViewModel model = open(folder / "s.toml");
+  ViewEdits edits = first_edits(model);
+  apply_message(model, SetLight{{}, 0.5, 170.0}, edits);
+  expect_saved(model, edits);
+}
+
+TEST(SceneFile, keeps_what_moves_where_the_viewer_has_not_moved_it) {
+  const TemporaryFolder folder;
+  write_text(folder / "s.toml", R"(
+camera = { position = [3, 3, 3], key = [{ frame = 0 }, { frame = 9, fov = 20 }] }
+[animation]
+interpolation = "linear"
+[[object]]
+shape = "box"
+key = [{ frame = -1 }, { frame = 3, translate = [1, 0, 0] }]
+)");
+  const ViewModel model = open(folder / "s.toml");
+  ViewEdits edits = first_edits(model);
+  const Scene kept = save_and_render(model, edits);
+  EXPECT_EQ(kept.animation.objects.size(), 1U);
+  EXPECT_TRUE(kept.animation.camera.empty());
+  EXPECT_EQ(kept.animation.interpolation, Interpolation::linear);
+  edits.objects[0].world_from_object.translation = {5, 5, 5};
+  EXPECT_FALSE(save_and_render(model, edits).animation.has_keys());
+}
+
+TEST(SceneFile, names_files_with_any_characters_that_are_text) {
+  const TemporaryFolder folder;
+  for (const std::string name :
+       {"a b.stl", "'single' \"double\".stl", "back\\slash\\.stl", "#[x]=.stl", "line\nend.stl",
+        "\t\x01\x7f.stl", "\xC3\xBC\xE2\x82\xAC.stl", "..stl", "%20.stl"}) {
+    SCOPED_TRACE(name);
+    write_text(folder / name, test::cube_stl(2));
+    const ViewModel model = open(folder / name);
+    expect_saved(model, first_edits(model));
+  }
+}
+
+TEST(SceneFile, refuses_names_that_are_not_text_and_says_which) {
+  const TemporaryFolder folder;
+  write_text(folder / "caf\xE9.stl", test::cube_stl(2));
+  const ViewModel model = open(folder / "caf\xE9.stl");
+  EXPECT_THAT(refusal(model, first_edits(model)),
+              testing::AllOf(HasSubstr("caf\xEF\xBF\xBD.stl"), HasSubstr("not UTF-8")));
+}
+
+TEST(SceneFile, goes_beside_the_model_where_its_folders_name_is_no_text) {
+  const TemporaryFolder folder;
+  const std::filesystem::path odd = folder / "caf\xE9";
+  std::filesystem::create_directory(odd);
+  write_text(odd / "cube.stl", test::cube_stl(2));
+  const ViewModel model = open(odd / "cube.stl");
+  const std::string text = make_scene_file(model, first_edits(model));
+  EXPECT_THAT(text, HasSubstr("# Save it beside cube.stl"));
+  write_text(odd / "s.toml", text);
+  const ViewModel scene = open(odd / "s.toml");
+  EXPECT_EQ(scene.scene.objects.size(), 1U);
+  EXPECT_THAT(make_scene_file(scene, first_edits(scene)), HasSubstr("# Save it beside s.toml"));
+}
+
+TEST(SceneFile, follows_links_and_dots_as_the_system_does) {
+  const TemporaryFolder folder;
+  std::filesystem::create_directories(folder / "real/deep");
+  write_text(folder / "real/cube.stl", test::cube_stl(2));
+  write_text(folder / "cube.stl",
+             test::cube_stl(3));  // where ".." of the link's own name would lead
+  std::filesystem::create_directory_symlink(folder / "real/deep", folder / "link");
+  const ViewModel model = open(folder / "link/../cube.stl");
+  expect_saved(model, first_edits(model));
+}
+
+TEST(SceneFile, of_a_pipe_or_of_nothing_to_see_is_an_error) {
+  const TemporaryFolder folder;
+  write_models(folder);
+  ViewModel model = open(folder / "two.obj");
+  ViewEdits edits = first_edits(model);
+  for (ObjectEdit& object : edits.objects) object.visible = false;
+  EXPECT_THAT(refusal(model, edits), HasSubstr("hidden"));
+  edits = first_edits(model);
+  model.file.clear();
+  EXPECT_THAT(make_scene_file(model, edits), HasSubstr("Save it beside two.obj"));
+  model.name = "stdin";
+  EXPECT_THAT(refusal(model, edits), HasSubstr("pipe"));
+}
+
+TEST(SceneFile, names_of_models_stay_in_their_comment) {
+  const TemporaryFolder folder;
+  write_text(folder / "a\n[camera]\n.stl", test::cube_stl(2));
+  const ViewModel model = open(folder / "a\n[camera]\n.stl");
+  EXPECT_THAT(make_scene_file(model, first_edits(model)), Not(HasSubstr("\n[camera]\n.stl")));
+}
+
+}  // namespace
+}  // namespace arris::view
