@@ -98,8 +98,7 @@ class EntryWriter {
       write_places();
     }
     for (auto& [number, part] : new_parts_) {
-      set_toml(part, "number", std::int64_t(number) + 1);
-      std::ranges::rotate(part, part.end() - 1);
+      part.insert(part.begin(), TomlMember{"number", {}, {{}, std::int64_t(number) + 1}});
       own_parts_.push_back({{}, std::move(part)});
     }
     if (!own_parts_.empty()) set_toml(table_, "part", std::move(own_parts_));

@@ -153,5 +153,21 @@ TEST(ViewStage, framed_views_show_all_from_where_they_are_asked_for) {
   EXPECT_NEAR(length(direction(FrameView::From::here) - here), 0, 1e-6);
 }
 
+TEST(ViewStage, the_ground_of_a_scene_is_where_it_says_until_it_is_turned_off) {
+  ViewModel model = make_model(1);
+  model.stage.source = StageOptions::Source::scene_file;
+  EXPECT_FALSE(first_edits(model).ground);
+  model.scene.ground = Ground{{1, 2, -5}, 10};
+  ViewEdits edits = first_edits(model);
+  EXPECT_TRUE(edits.ground);
+  const Scene shown = stage_view(model, edits).scene;
+  ASSERT_EQ(shown.objects.size(), 2U);
+  EXPECT_EQ(shown.meshes.back().positions[0].z, -5);
+  EXPECT_EQ(length(shown.meshes.back().positions[0] - shown.meshes.back().positions[1]), 20);
+  apply_message(model, SetGround{false}, edits);
+  EXPECT_EQ(stage_view(model, edits).scene.objects.size(), 1U);
+  EXPECT_FALSE(stage_view(model, edits).scene.ground);
+}
+
 }  // namespace
 }  // namespace arris::view
