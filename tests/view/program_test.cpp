@@ -6,6 +6,7 @@
 #include <sys/wait.h>
 
 #include <csignal>
+#include <filesystem>
 #include <initializer_list>
 #include <memory>
 #include <string>
@@ -106,6 +107,23 @@ TEST(ViewProgram, shows_a_file_anew_that_has_changed) {
   EXPECT_EQ(socket.read_text("scene")["bounds"]["upper"][0], 2);
   test::write_text(place / "cube.stl", test::cube_stl(3));
   while (socket.read_text("scene")["bounds"]["upper"][0] != 3) {
+  }
+}
+
+TEST(ViewProgram, what_it_saves_can_be_rendered_and_viewed) {
+  const test::Workplace place;
+  std::filesystem::create_directory(place / "here");
+  std::filesystem::rename(place / "cube.stl", place / "here/a \"cube\".stl");
+  test::write_text(place / "here/s.toml",
+                   "camera.position = [5, 6, 7] # [[object]]\r\n"
+                   "[[ \"object\" ]]\r\nfile = 'a \"cube\".stl'\r\n");
+  for (const char* name : {"here/a \"cube\".stl", "here/s.toml", "saved.toml"}) {
+    RunningView view(place, {(place / name).string()});
+    const auto saved = test::fetch(view.port(), test::Request("/scene.toml?t=" + view.token()));
+    ASSERT_EQ(saved.status, 200) << saved.body;
+    test::write_text(place / "saved.toml", saved.body);
+    const test::Outcome outcome = place.arris("render saved.toml -o saved.png --spp 1 --quiet");
+    EXPECT_EQ(outcome.code, 0) << outcome.err << saved.body;
   }
 }
 
