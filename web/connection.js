@@ -59,6 +59,7 @@ export class Connection extends EventTarget {
   }
 
   connect() {
+    if (this.#socket) return;
     clearTimeout(this.#retryTimer);
     this.#tell("status", { state: "connecting" });
     const scheme = location.protocol === "https:" ? "wss" : "ws";
@@ -68,6 +69,8 @@ export class Connection extends EventTarget {
       this.#attempt = 0;
       this.#waiting.clear();
       this.#sentAt.clear();
+      // What went to a connection before is in the scene that comes first, or lost.
+      this.#newest.clear();
       socket.send(JSON.stringify({ type: "hello", ...this.hello() }));
       this.#tell("status", { state: "open" });
     };
@@ -147,6 +150,8 @@ export class Connection extends EventTarget {
   async #lost() {
     this.#socket = null;
     const refused = await this.#isRefused();
+    // Meanwhile the user may have asked for another attempt.
+    if (this.#socket) return;
     const delay = refused ? LONGEST_DELAY_MS : retryDelay(this.#attempt++);
     this.#tell("status", { state: refused ? "refused" : "lost", retryInSeconds: delay / 1000 });
     this.#retryTimer = setTimeout(() => this.connect(), delay);

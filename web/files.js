@@ -89,6 +89,9 @@ export class Files {
     window.addEventListener("dragenter", (event) => {
       if (!hasFiles(event)) return;
       depth += 1;
+      const takes = this.#session.scene?.upload;
+      byId("drop-text").textContent = takes ? "Drop the model to open it" : "This server does not take models";
+      hint.classList.toggle("refused", !takes);
       hint.hidden = false;
     });
     window.addEventListener("dragleave", (event) => {
@@ -108,23 +111,37 @@ export class Files {
     const progress = byId("beam-progress");
     const look = byId("beam-show");
     const start = byId("beam-start");
+    const stop = byId("beam-stop");
+    /** `state`: "working", "done" or null. */
+    const show = (state) => {
+      const hadFocus = work.contains(document.activeElement);
+      work.hidden = !state;
+      progress.parentElement.hidden = state !== "working";
+      // A server that does not number its scenes knows no end before the end either.
+      stop.hidden = this.#session.scene?.seq === undefined;
+      look.hidden = state !== "done";
+      start.disabled = state === "working";
+      if (!hadFocus || work.contains(document.activeElement)) return;
+      (state === "done" ? look : start).focus();
+    };
     start.addEventListener("click", () => {
       this.#session.send("beam");
-      work.hidden = false;
-      look.hidden = true;
-      progress.hidden = false;
       progress.value = 0;
+      show("working");
+      work.scrollIntoView({ block: "nearest" });
     });
+    stop.addEventListener("click", () => this.#session.send("beam_stop"));
     this.#connection.addEventListener("beam", ({ detail }) => {
-      work.hidden = Boolean(detail.error);
       progress.value = detail.done;
-      progress.hidden = detail.ready;
-      look.hidden = !detail.ready;
-      start.disabled = !detail.ready && !detail.error;
+      const isStopped = detail.stopped && !detail.ready;
+      show(detail.error || isStopped ? null : detail.ready ? "done" : "working");
+      if (isStopped) this.#messages.info("The beam picture was cancelled");
       if (detail.error) this.#messages.error(`No beam picture: ${detail.error}`, detail.remedy);
       if (detail.ready) this.#messages.info("The beam picture is done", "Open it under “Picture and file”.");
     });
-    this.#connection.addEventListener("status", () => (start.disabled = false));
+    this.#connection.addEventListener("status", ({ detail }) => {
+      if (detail.state !== "connecting" && !work.hidden && look.hidden) show(null);
+    });
     look.addEventListener("click", () => this.#showBeam());
     byId("beam-save").addEventListener("click", () => this.#save("/beam.png", "beam.png", "beam picture"));
   }

@@ -74,7 +74,12 @@ const FINGERS = [
   ["Tap, double tap", "select, centre of turning"],
 ];
 
-export const fillMouseHelp = (body, preset) => fillTable(body, [...MOUSE[preset], ...FINGERS], (text) => [text]);
+/** What the device has comes first. */
+export function fillMouseHelp(body, preset) {
+  const isTouched = window.matchMedia("(pointer: coarse)").matches;
+  const rows = isTouched ? [...FINGERS, ...MOUSE[preset]] : [...MOUSE[preset], ...FINGERS];
+  fillTable(body, rows, (text) => [text]);
+}
 
 /** "1 · 3" as two keys. */
 function keyboardHead(shown) {

@@ -16,6 +16,7 @@ import { View } from "./view.js";
 
 const RESIZE_MS = 200;
 const KEY_ANGLE = Math.PI / 36;
+const FIRST_PICTURE = "The first picture is being made";
 
 const byId = (id) => document.getElementById(id);
 const stage = byId("stage");
@@ -26,12 +27,13 @@ const messages = new Messages(byId("messages"));
 const token = new URLSearchParams(location.search).get("t") ?? "";
 const connection = new Connection(token, () => ({ size: wantedSize() }));
 const session = new Session(connection);
-const picture = new Picture(canvas, (frame) => connection.acknowledge(frame));
-const stats = new Stats();
-const view = new View(session, () => {
+const wantedAspect = () => {
   const [width, height] = wantedSize();
   return width / height;
-});
+};
+const picture = new Picture(canvas, (frame) => connection.acknowledge(frame), wantedAspect);
+const stats = new Stats();
+const view = new View(session, wantedAspect);
 const panels = new Panels(session);
 const compare = new Compare(session, picture);
 const objects = new Objects(session, (object) => view.lookAt(object, picture.aspect));
@@ -98,40 +100,46 @@ session.addEventListener("scene", drawMarks);
 const STATUS = { connecting: "connecting", open: "connected", lost: "no connection", refused: "refused" };
 let trouble = { state: null, message: null };
 
-connection.addEventListener("status", ({ detail: { state, retryInSeconds } }) => {
+connection.addEventListener("status", ({ detail: { state } }) => {
   const status = byId("status");
   status.className = state;
+  if (state !== "connecting") stage.classList.toggle("stale", state !== "open");
   if (status.textContent !== STATUS[state]) status.textContent = STATUS[state];
   if (state === "connecting") return;
   if (state !== trouble.state) trouble.message?.remove();
-  trouble = { state, message: state === "open" ? null : tellTrouble(state, retryInSeconds) };
-  byId("busy").hidden = true;
+  trouble = { state, message: state === "open" ? null : tellTrouble(state) };
+  showBusy(null);
   if (state === "open") {
+    if (!canvas.dataset.frame) showBusy(FIRST_PICTURE);
     askedSize = String(wantedSize());
     picture.restart();
   }
 });
 
-function tellTrouble(state, retryInSeconds) {
+function showBusy(what) {
+  byId("busy").hidden = !what;
+  byId("busy-text").textContent = what ?? "";
+}
+
+function tellTrouble(state) {
+  const retry = { label: "Try now", run: () => connection.connect() };
   if (state === "refused") {
     const remedy = "Its token is not, or no longer, valid. Open the address that arris view has printed last.";
-    return messages.lasting("error", "The server refuses this address", remedy);
+    return messages.lasting("error", "The server refuses this address", remedy, retry);
   }
-  const seconds = Math.max(Math.round(retryInSeconds), 1);
-  const remedy = `Trying again in ${seconds} s. Is arris view still running?`;
-  return messages.lasting("error", "The server does not answer", remedy);
+  const remedy = "Is arris view still running? The page tries again by itself.";
+  return messages.lasting("error", "The server does not answer", remedy, retry);
 }
 
 connection.addEventListener("frame", ({ detail }) => picture.show(detail));
 connection.addEventListener("state", ({ detail }) => stats.setState(detail));
+connection.addEventListener("camera", ({ detail }) => view.follow(detail));
 connection.addEventListener("error", ({ detail }) => {
   session.setRefused(detail.seq);
   messages.error(detail.text, detail.remedy);
 });
-connection.addEventListener("busy", ({ detail }) => {
-  byId("busy").hidden = !detail.what;
-  byId("busy-text").textContent = detail.what ?? "";
-});
+connection.addEventListener("busy", ({ detail }) => showBusy(detail.what));
+picture.addEventListener("drawn", () => byId("busy-text").textContent === FIRST_PICTURE && showBusy(null));
 session.addEventListener("scene", ({ detail }) => {
   if (!detail?.fromServer) return;
   const { name } = session.scene;
@@ -139,6 +147,7 @@ session.addEventListener("scene", ({ detail }) => {
   byId("model-name").title = name;
   document.title = `${name} – Arris`;
 });
+session.addEventListener("scene", () => (byId("legend").hidden = !session.scene?.overlay));
 
 // Mouse, fingers and keys
 
@@ -153,6 +162,29 @@ function setPreset(preset) {
   byId("mouse").value = preset;
   remember("mouse", preset);
   fillMouseHelp(byId("help-mouse").tBodies[0], preset);
+}
+
+// What the picture answers to, until it has been turned for the first time
+
+function showHint() {
+  if (remembered("hinted", "")) return;
+  const isTouched = window.matchMedia("(pointer: coarse)").matches;
+  const turn = settings.preset === "blender" ? "Drag with the middle button to turn" : "Drag to turn";
+  byId("hint").textContent = isTouched
+    ? "One finger turns, two zoom and shift"
+    : `${turn}, wheel to zoom, click to choose · H for all keys`;
+  byId("hint").hidden = false;
+}
+
+function endHint() {
+  if (byId("hint").hidden) return;
+  byId("hint").hidden = true;
+  remember("hinted", "yes");
+}
+
+function setActive(on) {
+  view.isActive = on;
+  if (on) endHint();
 }
 
 function centreOn(x, y) {
@@ -175,7 +207,7 @@ new Input(
     moveBegin: (x, y) => move.begin(x, y),
     moveBy: (right, down) => move.by(right, down),
     moveEnd: () => move.end(),
-    active: (on) => (view.isActive = on),
+    active: setActive,
   },
   settings,
 );
@@ -247,6 +279,7 @@ function togglePanel() {
 byId("views").addEventListener("click", ({ target }) => {
   if (target.dataset.view !== undefined) view.frame(target.dataset.view);
 });
+byId("save-button").addEventListener("click", () => files.savePicture());
 byId("help-button").addEventListener("click", () => byId("help").showModal());
 byId("help").addEventListener("keydown", (event) => {
   if (event.key.toLowerCase() === "h") byId("help").close();
@@ -260,11 +293,13 @@ byId("detail").addEventListener("change", ({ target }) => {
   resize();
 });
 byId("sheet-button").addEventListener("click", () => {
-  const drawn = byId("panel").classList.toggle("drawn");
+  const drawn = document.body.classList.toggle("drawn");
+  byId("panel").scrollTop = 0;
   byId("sheet-button").setAttribute("aria-expanded", String(drawn));
   byId("sheet-label").textContent = drawn ? "Less" : "All settings";
 });
 
 setPreset(settings.preset);
 byId("detail").value = settings.detail;
+picture.addEventListener("drawn", showHint, { once: true });
 connection.connect();

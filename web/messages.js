@@ -21,9 +21,21 @@ export class Messages {
     setTimeout(() => item.remove(), PASSING_MS);
   }
 
-  /** Stays until it is dismissed or `remove()` is called on what is returned. */
-  lasting(kind, text, remedy) {
-    return this.#show(kind, text, remedy);
+  /**
+   * Stays until it is dismissed or `remove()` is called on what is returned. `action`: a button's label and what it
+   * does.
+   */
+  lasting(kind, text, remedy, action) {
+    const item = this.#show(kind, text, remedy);
+    if (action && !item.querySelector(".action")) {
+      const button = document.createElement("button");
+      button.type = "button";
+      button.className = "action";
+      button.textContent = action.label;
+      button.onclick = action.run;
+      item.firstElementChild.append(button);
+    }
+    return item;
   }
 
   #show(kind, text, remedy) {
@@ -32,7 +44,9 @@ export class Messages {
       item = this.#make(kind, text);
       this.#list.append(item);
     }
-    item.querySelector("span").textContent = remedy ?? "";
+    const span = item.querySelector("span");
+    // Written again it would be read again.
+    if (span.textContent !== (remedy ?? "")) span.textContent = remedy ?? "";
     // The picture stays visible however much goes wrong.
     while (this.#list.children.length > 4) this.#list.firstElementChild.remove();
     return item;

@@ -144,14 +144,22 @@ export class Panels {
     if (!scene) return;
     this.#updateRounding(scene);
     this.#show.lighting(scene.lighting);
-    // Models without lights of their own have none to go back to.
-    if (scene.lighting === "file" || scene.lightings?.includes("file")) byId("lighting-file").hidden = false;
+    this.#updateLightings(scene);
     this.#show.strength(scene.strength);
     this.#show.rotation(scene.rotation);
     this.#show.shader(scene.shader);
     this.#show.ground(scene.ground);
     this.#show.overlay(scene.overlay);
     this.#updateMaterials(scene);
+  }
+
+  /** Only those that the model has; a server that does not say: its file's own too, where it is lit so. */
+  #updateLightings({ lighting, lightings }) {
+    for (const input of byId("lighting").querySelectorAll("input")) {
+      const label = input.closest("label");
+      if (lightings) label.hidden = !lightings.includes(input.value) && input.value !== lighting;
+      else if (input.value === lighting) label.hidden = false;
+    }
   }
 
   #updateRounding({ rounding, bounds, objects }) {

@@ -1,5 +1,8 @@
 // picture.js — shows the server's frames and says where in them a place on the screen is.
 
+// So long a first picture of another shape, that of the page before, is held back: the right one is on its way.
+const SHAPE_PATIENCE_MS = 5000;
+const SHAPE_SLACK = 0.02;
 // More than this costs more time than it shows, unless it is asked for.
 const AUTOMATIC_PIXELS = 1920 * 1080;
 const SMALLEST = 64;
@@ -24,13 +27,19 @@ export function fitInto(areaWidth, areaHeight, width, height) {
   return { left: (areaWidth - shown[0]) / 2, top: (areaHeight - shown[1]) / 2, width: shown[0], height: shown[1] };
 }
 
+/** Whether a frame has the shape, width over height, of what was asked for. */
+export const hasShape = ({ width, height }, aspect) => Math.abs(width / height / aspect - 1) < SHAPE_SLACK;
+
 export class Picture extends EventTarget {
   #context;
   #newest = 0;
+  #patientUntil = 0;
+  #wantedAspect;
 
-  /** Dispatches "drawn" with the frame's header. */
-  constructor(canvas, acknowledge) {
+  /** Dispatches "drawn" with the frame's header; `wantedAspect()`: width over height of what was asked for. */
+  constructor(canvas, acknowledge, wantedAspect) {
     super();
+    this.#wantedAspect = wantedAspect;
     this.canvas = canvas;
     this.acknowledge = acknowledge;
     this.#context = canvas.getContext("2d", { alpha: false });
@@ -39,10 +48,18 @@ export class Picture extends EventTarget {
   /** A new server counts its frames from the beginning. */
   restart() {
     this.#newest = 0;
+    this.#patientUntil = performance.now() + SHAPE_PATIENCE_MS;
+  }
+
+  /** After a beginning, until a picture of the right shape is there, or has been waited for in vain. */
+  #isHeldBack(header) {
+    if (hasShape(header, this.#wantedAspect())) this.#patientUntil = 0;
+    return performance.now() < this.#patientUntil;
   }
 
   async show({ header, jpeg }) {
     try {
+      if (this.#isHeldBack(header)) return;
       const bitmap = await createImageBitmap(new Blob([jpeg], { type: "image/jpeg" }));
       // Decoders may overtake each other.
       if (header.frame >= this.#newest) {

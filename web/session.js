@@ -1,7 +1,8 @@
 // session.js — the scene as this page knows it, between the controls and the connection.
 //
 // A change is shown at once and sent; what the server tells of the same thing is not taken over while a change is on
-// its way, or a slider would jump back under the hand.
+// its way, or a slider would jump back under the hand. A scene says by its `seq` which changes are in it; that of
+// a server that does not is judged by the frames.
 
 // A message that changes nothing brings no frame; after this long the server's word counts again.
 const PENDING_MS = 2000;
@@ -9,6 +10,7 @@ const PENDING_MS = 2000;
 export class Session extends EventTarget {
   #connection;
   #shownSeq = 0;
+  #refusedSeq = 0;
   #sentAt = new Map();
   #timer = null;
 
@@ -18,6 +20,9 @@ export class Session extends EventTarget {
     this.#connection = connection;
     this.scene = null;
     connection.addEventListener("scene", ({ detail }) => this.#take(detail));
+    connection.addEventListener("camera", ({ detail: { position, target, up, fov } }) => {
+      if (this.scene) this.scene.camera = { position, target, up, fov };
+    });
   }
 
   /** Frames tell which changes have arrived. */
@@ -28,11 +33,15 @@ export class Session extends EventTarget {
   /** A change was refused: what the server tells next counts. */
   setRefused(seq) {
     this.setShownSeq(seq ?? Infinity);
+    this.#refusedSeq = Math.max(this.#refusedSeq, Math.min(seq ?? Infinity, this.#connection.lastSeq));
   }
 
-  isPending(type) {
+  /** Whether a message of this type has left that a scene, the newest one unless given, knows nothing of. */
+  isPending(type, scene = this.scene) {
+    const newest = this.#connection.newestSeq(type);
+    if (typeof scene?.seq === "number") return newest > Math.max(scene.seq, this.#refusedSeq);
     const sentAt = this.#sentAt.get(type) ?? -Infinity;
-    return this.#connection.newestSeq(type) > this.#shownSeq && performance.now() - sentAt < PENDING_MS;
+    return newest > this.#shownSeq && performance.now() - sentAt < PENDING_MS;
   }
 
   /** Sends a message of this type; `change` makes the same change in the page's own scene. */
@@ -54,14 +63,14 @@ export class Session extends EventTarget {
 
   #take(scene) {
     const before = this.scene;
-    if (before) {
+    const isNew = !before || before.name !== scene.name || before.objects.length !== scene.objects.length;
+    if (!isNew) {
       for (const [type, names] of Object.entries(KEYS_OF)) {
-        if (!this.isPending(type)) continue;
+        if (!this.isPending(type, scene)) continue;
         for (const name of names) scene[name] = before[name];
       }
     }
     this.scene = scene;
-    const isNew = !before || before.name !== scene.name || before.objects.length !== scene.objects.length;
     this.dispatchEvent(new CustomEvent("scene", { detail: { isNew, fromServer: true } }));
   }
 }

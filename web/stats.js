@@ -12,13 +12,21 @@ function set(id, text, title) {
   if (title) element.parentElement.title = title;
 }
 
+// Parts of seconds only while they can be read.
+const formatSeconds = (seconds) => `${seconds < 10 ? seconds.toFixed(1) : Math.round(seconds)} s`;
+
 export class Stats {
   #latency = null;
+  #isMoving = false;
+  #isDone = false;
 
   /** A frame has been drawn; latency from input to picture in milliseconds, or null. */
   setFrame(header, latency) {
     const samples = count(header.samples) + (header.converged ? " ✓" : "");
     set("stat-samples", header.moving ? "moving" : samples);
+    this.#isMoving = header.moving;
+    if (header.moving) set("stat-seconds", formatSeconds(0));
+    if (!header.converged) this.#isDone = false;
     if (latency === null) return;
     // Single frames jump about more than can be read.
     this.#latency = this.#latency === null ? latency : 0.7 * this.#latency + 0.3 * latency;
@@ -28,7 +36,7 @@ export class Stats {
 
   setState(state) {
     set("stat-integrator", INTEGRATORS[state.integrator] ?? state.integrator);
-    set("stat-seconds", `${state.seconds < 10 ? state.seconds.toFixed(1) : Math.round(state.seconds)} s`);
+    this.#setSeconds(state);
     set("stat-fps", `${Math.round(state.fps)} fps`, `${formatNumber(state.frame_ms, 3)} ms a frame in the server`);
     set("stat-fresh", percent(state.new_samples));
     const { edges, classes } = state;
@@ -42,6 +50,20 @@ export class Stats {
       ["Simple pixels", percent(classes.simple)],
       ["Complex pixels", percent(classes.complex)],
     ]);
+    this.#setLegend(state);
+  }
+
+  /** Since the view stands still, none while it moves; a picture that is done keeps the time that it took. */
+  #setSeconds({ seconds, converged }) {
+    if (this.#isDone) return;
+    set("stat-seconds", formatSeconds(this.#isMoving ? 0 : seconds));
+    this.#isDone = converged && !this.#isMoving;
+  }
+
+  #setLegend({ integrator, edges: { silhouette, sharp, shadow } }) {
+    const found = `Found: ${count(silhouette)} silhouettes, ${count(sharp)} sharp and ${count(shadow)} shadow edges.`;
+    const traced = "This picture is traced, which needs neither edges nor points: it is only darker.";
+    set("legend-edges", integrator === "traced" ? traced : found);
   }
 
   #fill(rows) {

@@ -31,6 +31,15 @@ export class View extends EventTarget {
     session.addEventListener("scene", ({ detail }) => detail?.fromServer && this.#take(detail.isNew));
   }
 
+  /** Another page has moved the view; who drags here leads. */
+  follow(camera) {
+    if (this.isActive) return;
+    this.camera.set(camera);
+    this.#sent.clear();
+    this.shown = this.camera.clone();
+    this.dispatchEvent(new Event("camera"));
+  }
+
   /** `edit` changes the camera; the new one is sent. */
   change(edit) {
     edit(this.camera);
