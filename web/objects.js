@@ -40,6 +40,7 @@ export class Objects extends EventTarget {
     if (id !== null) byId("objects-section").open = true;
     this.#list();
     this.#details();
+    byId("object-details").scrollIntoView({ block: "nearest" });
     byId("object-list").querySelector(".chosen")?.scrollIntoView({ block: "nearest" });
     this.dispatchEvent(new Event("chosen"));
   }

@@ -1,7 +1,7 @@
 // picture.js — shows the server's frames and says where in them a place on the screen is.
 
 // So long a first picture of another shape, that of the page before, is held back: the right one is on its way.
-const SHAPE_PATIENCE_MS = 5000;
+const SHAPE_PATIENCE_MS = 8000;
 const SHAPE_SLACK = 0.02;
 // More than this costs more time than it shows, unless it is asked for.
 const AUTOMATIC_PIXELS = 1920 * 1080;

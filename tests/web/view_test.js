@@ -2,7 +2,6 @@
 import assert from "node:assert/strict";
 import fs from "node:fs";
 import http from "node:http";
-import net from "node:net";
 import { after, before, test } from "node:test";
 import { plateAndCube, plateStl } from "./models.js";
 import * as viewer from "./viewer.js";
@@ -405,35 +404,9 @@ test("a dropped file is opened where that is allowed", { timeout: 4 * viewer.PAT
   }
 });
 
-/** Stands before a server, as a network does, and can be cut. */
-async function startLine(serverPort) {
-  const sockets = new Set();
-  const listener = net.createServer((here) => {
-    const there = net.connect(serverPort, "127.0.0.1");
-    for (const [from, to] of [[here, there], [there, here]]) {
-      sockets.add(from);
-      from.pipe(to);
-      from.on("error", () => to.destroy());
-      from.on("close", () => to.destroy());
-    }
-  });
-  const listen = (port) => new Promise((resolve) => listener.listen(port, "127.0.0.1", resolve));
-  await listen(0);
-  const { port } = listener.address();
-  return {
-    port,
-    cut() {
-      listener.close();
-      for (const socket of sockets) socket.destroy();
-      sockets.clear();
-    },
-    mend: () => listen(port),
-  };
-}
-
 test("reconnects when the line is mended, and tells of a new token", { timeout: 4 * viewer.PATIENCE_MS }, async () => {
   let server = await viewer.startServer(model);
-  const line = await startLine(server.port);
+  const line = await viewer.startLine(server.port);
   const { page, context, errors } = await viewer.openPage(`http://127.0.0.1:${line.port}/?t=${server.token}`);
   const status = () => page.locator("#status").textContent();
   try {

@@ -2,15 +2,18 @@
 import assert from "node:assert/strict";
 import { spawn } from "node:child_process";
 import fs from "node:fs";
+import net from "node:net";
 import os from "node:os";
 import path from "node:path";
 import { setTimeout as sleep } from "node:timers/promises";
 import { fileURLToPath } from "node:url";
 import { chromium } from "playwright-core";
 
-const root = fileURLToPath(new URL("../..", import.meta.url));
+export const root = fileURLToPath(new URL("../..", import.meta.url));
 const program = process.env.ARRIS ?? path.join(root, "build/release/arris");
 const screenshots = process.env.ARRIS_SCREENSHOTS ?? path.join(root, "build/release/web-screenshots");
+// For work on the page without building the program: its files are taken from this folder instead.
+const webFolder = process.env.ARRIS_WEB;
 const browserProgram = process.env.CHROMIUM ?? "/usr/bin/chromium";
 
 // Other work may share the machine: nothing here fails for being slow before this.
@@ -40,8 +43,8 @@ export async function until(what, check) {
 const CHEAP = ["--shader", "direct", "--spp", "8"];
 
 /** Starts `arris view` and waits for its address. */
-export async function startServer(file, { port = "0", options = [] } = {}) {
-  const all = ["view", file, "--no-browser", "--port", String(port), ...CHEAP, ...options];
+export async function startServer(file, { port = "0", quality = CHEAP, options = [] } = {}) {
+  const all = ["view", file, "--no-browser", "--port", String(port), ...quality, ...options];
   const child = spawn(program, all, { stdio: ["ignore", "pipe", "pipe"] });
   let output = "";
   let ended = null;
@@ -57,6 +60,8 @@ export async function startServer(file, { port = "0", options = [] } = {}) {
   });
   return {
     url,
+    pid: child.pid,
+    hasEnded: () => ended !== null,
     port: new URL(url).port,
     token: new URL(url).searchParams.get("t"),
     output: () => output,
@@ -68,17 +73,54 @@ export async function startServer(file, { port = "0", options = [] } = {}) {
   };
 }
 
+/** Stands before a server, as a network does, and can be cut. */
+export async function startLine(serverPort) {
+  const sockets = new Set();
+  const listener = net.createServer((here) => {
+    const there = net.connect(serverPort, "127.0.0.1");
+    for (const [from, to] of [[here, there], [there, here]]) {
+      sockets.add(from);
+      from.pipe(to);
+      from.on("error", () => to.destroy());
+      from.on("close", () => to.destroy());
+    }
+  });
+  const listen = (port) => new Promise((resolve) => listener.listen(port, "127.0.0.1", resolve));
+  await listen(0);
+  const { port } = listener.address();
+  return {
+    port,
+    cut() {
+      listener.close();
+      for (const socket of sockets) socket.destroy();
+      sockets.clear();
+    },
+    mend: () => listen(port),
+  };
+}
+
 let browser = null;
 export async function launchBrowser() {
   browser = await chromium.launch({
     executablePath: browserProgram,
     // Root needs the first, containers with a small /dev/shm the second.
-    args: ["--no-sandbox", "--disable-dev-shm-usage"],
+    args: [
+      "--no-sandbox",
+      "--disable-dev-shm-usage",
+      // A page that was not loaded from this machine may not ask it otherwise.
+      ...(webFolder ? ["--disable-features=LocalNetworkAccessChecks"] : []),
+    ],
     timeout: PATIENCE_MS,
   });
 }
 export async function closeBrowser() {
   await browser?.close();
+}
+
+function serveFromFolder(route) {
+  const name = new URL(route.request().url()).pathname.slice(1) || "index.html";
+  const file = path.join(webFolder, name);
+  return fs.existsSync(file) ? route.fulfill({ path: file }) : route.continue();
 }
 
 /** A page of its own in a window of this size, with the messages of its WebSocket. */
@@ -107,6 +149,7 @@ export async function openPage(url, { width = 760, height = 460, ...options } = 
       else traffic.order.push({ picture: payload.readUInt32LE(8) });
     });
   });
+  if (webFolder) await page.route(/\/(\w+\.\w+)?(\?t=[\w-]*)?$/, serveFromFolder);
   await page.goto(url);
   return { page, context, traffic, errors };
 }
