@@ -5,7 +5,8 @@ import { parseHeader, retryDelay } from "../../web/connection.js";
 import { clickAction, dragAction } from "../../web/input.js";
 import { keyName } from "../../web/keys.js";
 import { formatNumber, logScale, parseRadius, radiusScale, usedRadius } from "../../web/panels.js";
-import { fitInto, pictureSize } from "../../web/picture.js";
+import { fitInto, hasShape, pictureSize } from "../../web/picture.js";
+import { Session } from "../../web/session.js";
 
 const press = (button, keys = {}) => ({ button, ...keys });
 
@@ -121,6 +122,75 @@ test("asks for pictures of the window's shape, within the protocol's bounds and 
 test("fits a picture into an area whole and in the middle", () => {
   assert.deepEqual(fitInto(100, 100, 200, 100), { left: 0, top: 25, width: 100, height: 50 });
   assert.deepEqual(fitInto(100, 50, 10, 10), { left: 25, top: 0, width: 50, height: 50 });
+});
+
+test("a first picture of another window's shape is told from one of this window's", () => {
+  assert.ok(hasShape({ width: 968, height: 800 }, 968 / 800));
+  assert.ok(hasShape({ width: 967, height: 801 }, 968 / 800));
+  assert.ok(!hasShape({ width: 1280, height: 720 }, 968 / 800));
+});
+
+/** What Session needs of a connection. */
+class FakeConnection extends EventTarget {
+  lastSeq = 0;
+  #newest = new Map();
+  send(type) {
+    this.#newest.set(type, ++this.lastSeq);
+    return this.lastSeq;
+  }
+  newestSeq(type) {
+    return this.#newest.get(type) ?? 0;
+  }
+  tell(type, detail) {
+    this.dispatchEvent(new CustomEvent(type, { detail }));
+  }
+}
+
+function openSession() {
+  const connection = new FakeConnection();
+  const session = new Session(connection);
+  const tell = (radius, seq, fields = {}) => {
+    connection.tell("scene", { name: "a", objects: [], rounding: { radius }, strength: 1, seq, ...fields });
+  };
+  const drag = (radius) => session.send("rounding", { radius }, (scene) => (scene.rounding = { radius }));
+  return { connection, session, tell, drag, radius: () => session.scene.rounding.radius };
+}
+
+test("a slider that is dragged does not jump back to what scenes say that do not know of it", (context) => {
+  context.mock.timers.enable({ apis: ["setTimeout"] });
+  const { session, tell, drag, radius } = openSession();
+  tell(1, 0);
+  drag(2);
+  const newest = drag(3);
+  tell(2, newest - 1, { strength: 5 });
+  assert.equal(radius(), 3);
+  assert.equal(session.scene.strength, 5, "what has not been changed here is taken over");
+  tell(2.9, newest);
+  assert.equal(radius(), 2.9, "the server's word on it");
+});
+
+test("a change that was refused, or another model, gives the server the word again", (context) => {
+  context.mock.timers.enable({ apis: ["setTimeout"] });
+  const { session, tell, drag, radius } = openSession();
+  tell(1, 0);
+  session.setRefused(drag(-1));
+  tell(1, 0);
+  assert.equal(radius(), 1);
+  drag(4);
+  tell(0.5, 0, { name: "b" });
+  assert.equal(radius(), 0.5);
+});
+
+test("scenes of a server that does not number them are judged by the frames", (context) => {
+  context.mock.timers.enable({ apis: ["setTimeout"] });
+  const { session, tell, drag, radius } = openSession();
+  tell(1);
+  const seq = drag(2);
+  tell(1);
+  assert.equal(radius(), 2);
+  session.setShownSeq(seq);
+  tell(1.9);
+  assert.equal(radius(), 1.9);
 });
 
 test("reads the header of a frame, and nothing from other bytes", () => {

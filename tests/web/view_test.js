@@ -264,6 +264,27 @@ pageTest("can be used with the keyboard alone", {}, async ({ page, traffic }) =>
   await page.locator("#help").waitFor({ state: "hidden" });
 });
 
+/** Roles whose elements one acts on, as a screen reader is told of them. */
+const CONTROLS = /^\s*- '?(button|checkbox|radio|slider|textbox|searchbox|spinbutton|combobox|progressbar)\b(.*)$/;
+
+pageTest("a screen reader is told the name of every control", {}, async ({ page }) => {
+  await page.evaluate(() => document.querySelectorAll("details").forEach((section) => (section.open = true)));
+  await page.locator("#compare").selectOption("none");
+  await page.locator("#split").waitFor();
+  await page.locator("#object-list .name").first().click();
+  const snapshot = await page.locator("body").ariaSnapshot();
+  const controls = snapshot.split("\n").filter((line) => CONTROLS.test(line));
+  assert.ok(controls.length > 35, snapshot);
+  for (const line of controls) assert.match(line, /^\s*- '?\w+ "[^"]+"/, "a control without a name");
+  for (const part of ["slider \"Radius, slider\"", "button \"Save picture\"", "complementary \"Settings\"", "main"]) {
+    assert.ok(snapshot.includes(part), `${part} is missing in\n${snapshot}`);
+  }
+  // Names tell things apart.
+  const names = controls.map((line) => line.trim().replace(/( \[[\w=]+\])*:?.*$/, (rest) => rest.split(":")[0]));
+  const doubled = names.filter((name, at) => names.indexOf(name) !== at);
+  assert.deepEqual(doubled, []);
+});
+
 pageTest("every control has a name", {}, async ({ page }) => {
   await page.evaluate(() => document.querySelectorAll("details").forEach((section) => (section.open = true)));
   const unnamed = await page.evaluate(() =>
@@ -273,6 +294,40 @@ pageTest("every control has a name", {}, async ({ page }) => {
       .map((element) => element.outerHTML),
   );
   assert.deepEqual(unnamed, []);
+});
+
+pageTest("the overlay says what its colours mean", {}, async ({ page }) => {
+  await page.locator("#hint", { hasText: "Drag to turn" }).waitFor();
+  assert.ok(await page.locator("#legend").isHidden());
+  await page.keyboard.press("e");
+  await page.getByRole("region", { name: "What the overlay shows" }).waitFor();
+  await viewer.until("figures of edges", async () => (await page.locator("#legend-edges").textContent()) !== "");
+  await viewer.screenshot(page, "overlay");
+  await page.keyboard.press("e");
+  await page.locator("#legend").waitFor({ state: "hidden" });
+  await viewer.drag(page, await viewer.middleOf(page), [60, 0]);
+  await page.locator("#hint").waitFor({ state: "hidden" });
+});
+
+pageTest("at 200 % zoom nothing is cut off", { width: 640, height: 400, deviceScaleFactor: 2 }, async ({ page }) => {
+  const cut = () =>
+    page.evaluate(() =>
+      [...document.querySelectorAll("button, input, select")]
+        .filter((element) => element.type !== "file" && element.checkVisibility())
+        .filter((element) => {
+          const { left, right } = element.getBoundingClientRect();
+          return left < 0 || right > window.innerWidth;
+        })
+        .map((element) => element.outerHTML),
+    );
+  assert.deepEqual(await cut(), []);
+  await page.locator("#sheet-button").click();
+  await page.locator("#lighting").waitFor();
+  assert.deepEqual(await cut(), []);
+  await page.locator("#save-scene").scrollIntoViewIfNeeded();
+  await viewer.screenshot(page, "zoom-200");
+  // The picture is still there beside the settings.
+  assert.ok((await page.locator("#picture").boundingBox()).height > 100);
 });
 
 for (const [scheme, width, height] of [
@@ -401,6 +456,62 @@ test("a dropped file is opened where that is allowed", { timeout: 4 * viewer.PAT
   } finally {
     await context.close();
     await other.stop();
+  }
+});
+
+/** A page between which and its server a test stands: `edit` changes what the server says, `tell` adds to it. */
+async function openBetween(url, edit) {
+  const opened = await viewer.openPage("about:blank");
+  let socket = null;
+  const sent = [];
+  await opened.page.routeWebSocket(/\/ws\?/, (page) => {
+    socket = page;
+    const server = page.connectToServer();
+    page.onMessage((message) => {
+      sent.push(JSON.parse(message));
+      // What the program at hand may not know yet.
+      if (sent.at(-1).type !== "beam_stop") server.send(message);
+    });
+    server.onMessage((message) => page.send(typeof message === "string" ? edit(message) : message));
+  });
+  await opened.page.goto(url);
+  return { ...opened, sent, tell: (message) => socket.send(JSON.stringify(message)) };
+}
+
+test("follows another page's camera, shows the lightings there are, cancels a beam picture", async () => {
+  const server = await viewer.startServer(model);
+  const edit = (text) => {
+    const message = JSON.parse(text);
+    if (message.type === "beam") return JSON.stringify({ ...message, done: 0.25, ready: false });
+    if (message.type !== "scene") return text;
+    return JSON.stringify({ ...message, lightings: ["studio", "white"], seq: message.seq ?? 0 });
+  };
+  const { page, context, errors, sent, tell } = await openBetween(server.url, edit);
+  try {
+    await viewer.firstFrame(page);
+    const isShown = (name) => page.locator(`#lighting label:has([value=${name}])`).isVisible();
+    await viewer.until("the lightings", async () => !(await isShown("sky")));
+    assert.deepEqual([await isShown("studio"), await isShown("white"), await isShown("file")], [true, true, false]);
+
+    const camera = { position: [0, -77, 5], target: [1, 2, 3], up: [0, 0, 1], fov: 30 };
+    tell({ type: "camera", ...camera });
+    await page.evaluate(() => new Promise((done) => setTimeout(done, 100)));
+    await page.keyboard.press("+");
+    const cameras = () => sent.filter(({ type }) => type === "camera");
+    await viewer.until("a camera", () => cameras().length > 0);
+    assert.deepEqual(cameras().at(-1).target.map(Math.round), camera.target);
+    assert.ok(Math.abs(cameras().at(-1).fov - camera.fov) < 1e-6);
+
+    await page.locator("#beam-start").click();
+    await page.getByRole("button", { name: "Cancel the beam picture" }).click();
+    await viewer.until("the end asked for", () => sent.some(({ type }) => type === "beam_stop"));
+    tell({ type: "beam", done: 0, ready: false, stopped: true });
+    await page.locator("#beam-work").waitFor({ state: "hidden" });
+    assert.ok(await page.locator("#beam-start").isEnabled());
+    assert.deepEqual(errors, []);
+  } finally {
+    await context.close();
+    await server.stop();
   }
 });
 
