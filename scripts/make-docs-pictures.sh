@@ -40,3 +40,6 @@ points=(--integrator edge-point --trace-below 0 --point-paths 64 --density 0.001
 frame_of examples/scenes/trellis.toml trellis.jpg "${points[@]}" --aov edges
 frame_of examples/scenes/trellis.toml trellis_without_edges.jpg "${points[@]}" --edges off
 frame_of examples/scenes/trellis.toml trellis_traced.jpg --spp "$spp"
+
+# The viewer, where a browser and what tests/web needs are installed.
+if [ -d tests/web/node_modules ]; then node tests/web/pictures.js; fi

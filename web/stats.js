@@ -3,7 +3,7 @@
 import { formatNumber } from "./panels.js";
 
 const INTEGRATORS = { "edge-point": "edge-point", traced: "traced" };
-const percent = (part) => `${Math.round(part * 100)} %`;
+const percent = (part) => (part > 0 && part < 0.005 ? "< 1 %" : `${Math.round(part * 100)} %`);
 const count = (number) => number.toLocaleString("en");
 
 function set(id, text, title) {

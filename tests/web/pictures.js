@@ -1,16 +1,15 @@
 // pictures.js — makes the pictures of the viewer in docs/pictures: node tests/web/pictures.js [NAME…]
 //
-// They are taken when the picture of the model is done, which takes minutes on a small machine. `ARRIS` is the
-// program, build/release/arris by default.
+// They are taken when the picture of the model is done, or after ARRIS_SECONDS (60), whichever is first. `ARRIS` is the
+// program, build/release/arris by default; ARRIS_SPP the samples of a pixel (32).
 import path from "node:path";
 import { setTimeout as sleep } from "node:timers/promises";
 import * as viewer from "./viewer.js";
 
 const model = path.join(viewer.root, "examples/models/keypad.obj");
 const folder = path.join(viewer.root, "docs/pictures");
-const quality = ["--spp", process.env.ARRIS_SPP ?? "64"];
-// A picture that is not quite done is better than none.
-const DONE_MS = 5 * 60_000;
+const quality = ["--spp", process.env.ARRIS_SPP ?? "32"];
+const DONE_MS = Number(process.env.ARRIS_SECONDS ?? "60") * 1000;
 
 const desktop = { width: 1280, height: 800 };
 const phone = { width: 390, height: 844, deviceScaleFactor: 1.5, hasTouch: true, isMobile: true };
