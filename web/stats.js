@@ -61,7 +61,7 @@ export class Stats {
   }
 
   #setLegend({ integrator, edges: { silhouette, sharp, shadow } }) {
-    const found = `Found: ${count(silhouette)} silhouettes, ${count(sharp)} sharp and ${count(shadow)} shadow edges.`;
+    const found = `${count(silhouette)} silhouettes, ${count(sharp)} sharp and ${count(shadow)} shadow edges`;
     const traced = "This picture is traced, which needs neither edges nor points: it is only darker.";
     set("legend-edges", integrator === "traced" ? traced : found);
   }

@@ -45,6 +45,7 @@ async function make(name) {
     await page.evaluate(() => document.getElementById("hint").remove());
     await prepare(page);
     await viewer.shown(page, traffic);
+    await page.evaluate(() => document.activeElement.blur());
     await finished(page, name);
     const file = path.join(folder, `view-${name}.jpg`);
     await page.screenshot({ path: file, type: "jpeg", quality: 85 });
