@@ -169,6 +169,9 @@ CommandRow view_row() {
           "where to listen; 0.0.0.0: for all that can reach this machine, who then need the "
           "secret only (default: 127.0.0.1, this machine alone)"},
          {"--port", "N", "0: any that is free (default: 7878, or any if it is taken)"},
+         {"--token", "TOKEN",
+          "of the address, so that pages come back when the viewer is started again: 16 or more of "
+          "A-Z a-z 0-9 _ - (default: a new one each time)"},
          {"--no-browser", "", "only print the address"},
          {"--once", "", "end when the last page has been closed"},
          {"--watch", "", "show the file anew when it changes"},

@@ -19,6 +19,7 @@
 #include "arris/values.h"
 #include "io/file_bytes.h"
 #include "scene/limits.h"
+#include "view/access.h"
 #include "view/view_server.h"
 
 extern char** environ;
@@ -39,6 +40,14 @@ view::ServerSettings make_server_settings(const Arguments& arguments) {
     settings.or_any_port = false;
   }
   settings.once = arguments.has("--once");
+  if (const auto given = arguments.find("--token")) {
+    if (!view::is_good_token(*given)) {
+      throw Error(Error::Kind::input, "--token",
+                  "must be 16 to 256 letters, digits, \"-\" or \"_\", such as what openssl rand "
+                  "-hex 16 prints");
+    }
+    settings.token = *given;
+  }
   settings.allow_upload = arguments.has("--allow-upload");
   settings.watch = arguments.has("--watch");
   settings.watched = arguments.positionals[0];

@@ -84,6 +84,15 @@ std::string make_token() {
   return token;
 }
 
+bool is_good_token(std::string_view token) {
+  constexpr std::size_t kLeast = 16, kMost = 256;
+  const auto is_plain = [](char c) {
+    return (c >= '0' && c <= '9') || (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '-' ||
+           c == '_';
+  };
+  return token.size() >= kLeast && token.size() <= kMost && std::ranges::all_of(token, is_plain);
+}
+
 bool is_same_secret(std::string_view a, std::string_view b) {
   if (a.size() != b.size()) return false;
   unsigned difference = 0;

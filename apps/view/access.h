@@ -13,6 +13,9 @@ namespace arris::view {
 // 128 random bits of the system as 32 hexadecimal digits.
 std::string make_token();
 
+// Long enough not to be guessed, of letters, digits, - and _, which addresses take as they are.
+bool is_good_token(std::string_view token);
+
 // In a time that does not depend on where the two differ.
 bool is_same_secret(std::string_view a, std::string_view b);
 

@@ -55,29 +55,58 @@ Answer refusal(http::status status, std::string text) {
   return {status, "text/plain; charset=utf-8", std::move(text) + "\n", ""};
 }
 
-class HttpSession : public std::enable_shared_from_this<HttpSession> {
+class HttpSession : public Stranger, public std::enable_shared_from_this<HttpSession> {
  public:
   HttpSession(ViewServer::Impl& server, asio::ip::tcp::socket socket)
-      : server_(server), stream_(std::move(socket)) {
+      : server_(server), stream_(std::move(socket)), timer_(server.context()) {
     parser_.header_limit(kMostHeaderBytes);
     parser_.body_limit(kMostUploadBytes);
   }
-  ~HttpSession() {
+  ~HttpSession() override {
     end_upload();
+    server_.remove_stranger(*this);
     if (counted_) server_.remove_connection();
   }
   HttpSession(const HttpSession&) = delete;
   HttpSession& operator=(const HttpSession&) = delete;
 
   void start() {
-    stream_.expires_after(kHeaderTime);
+    server_.add_stranger(*this);
+    wait_at_most(server_.settings().header_time);
     http::async_read_header(
         stream_, buffer_, parser_,
         [self = shared_from_this()](error_code error, std::size_t) { self->on_header(error); });
   }
 
+  void drop() override { stream_.close(); }
+
  private:
+  // What is being read ends then, and the client can be told so: the stream's own limit would close it.
+  void wait_at_most(std::chrono::milliseconds time) {
+    reading_ = true;
+    timer_.expires_after(time);
+    timer_.async_wait([weak = weak_from_this()](error_code error) {
+      const auto self = weak.lock();
+      if (error || !self || !self->reading_ || self->timer_.expiry() > Clock::now()) return;
+      self->late_ = true;
+      self->stream_.cancel();
+    });
+  }
+  void end_wait() {
+    reading_ = false;
+    timer_.cancel();
+  }
+  static bool is_malformed(error_code error) {
+    return error.category() == http::make_error_code(http::error::bad_version).category() &&
+           error != http::error::end_of_stream;
+  }
+
   void on_header(error_code error) {
+    end_wait();
+    if (error && late_ && parser_.got_some()) {
+      return answer(refusal(http::status::request_timeout,
+                            "the request did not arrive in time; send it at once"));
+    }
     if (error == http::error::body_limit) {
       return answer(
           refusal(http::status::payload_too_large,
@@ -86,8 +115,18 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
     if (error == http::error::header_limit) {
       return answer(refusal(http::status::request_header_fields_too_large, "too long"));
     }
+    if (is_malformed(error)) {
+      return answer(refusal(http::status::bad_request,
+                            fmt::format("this is no HTTP request ({}); open the address that arris "
+                                        "view has printed in a browser",
+                                        error.message())));
+    }
     if (error) return;  // no request, or none in time
     const auto& request = parser_.get();
+    if (request.count(http::field::host) > 1 || request.count(http::field::origin) > 1) {
+      return answer(
+          refusal(http::status::bad_request, "there must be one Host and at most one Origin"));
+    }
     const std::string_view host = to_view(request[http::field::host]);
     if (!is_own_host(host, server_.settings().host)) {
       return answer(refusal(http::status::forbidden, "this server has another name"));
@@ -99,6 +138,13 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
     auto target = parse_target(to_view(request.target()));
     if (!target) return answer(refusal(http::status::bad_request, "no address"));
     target_ = std::move(*target);
+    if (is_same_secret(target_.token, server_.token())) {
+      if (!server_.admit(*this)) {
+        return answer(
+            refusal(http::status::service_unavailable, "too many connections; try again"));
+      }
+      counted_ = true;
+    }
     if (request.method() == http::verb::post) return on_post();
     if (request.method() != http::verb::get) {
       return answer(refusal(http::status::method_not_allowed, "only GET, and POST of models"));
@@ -106,7 +152,7 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
     on_get();
   }
 
-  [[nodiscard]] bool has_token() const { return is_same_secret(target_.token, server_.token()); }
+  [[nodiscard]] bool has_token() const { return counted_; }
   void refuse_token() {
     answer(refusal(http::status::forbidden,
                    "the address lacks its token; use the one that arris view has printed"));
@@ -127,7 +173,6 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
     if (!is_known) return answer(refusal(http::status::not_found, "there is no such address"));
     if (!has_token()) return refuse_token();
     if (path == "/ws") return on_socket();
-    stream_.expires_after(kBodyTime);
     if (path == "/scene.toml") {
       return server_.renderer().save_scene([self = shared_from_this()](std::string text,
                                                                        const std::string& problem) {
@@ -156,7 +201,6 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
       return answer(refusal(http::status::service_unavailable,
                             fmt::format("{} pages look already; close one", kMostClients)));
     }
-    stream_.expires_never();
     start_socket_session(server_, std::move(stream_), parser_.release());
     counted_ = false;  // the client session counts now
   }
@@ -183,22 +227,36 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
     }
     uploading_ = true;
     extension_ = *extension;
-    stream_.expires_after(kBodyTime);
+    wait_at_most(server_.settings().body_time);
     http::async_read(
         stream_, buffer_, parser_,
         [self = shared_from_this()](error_code error, std::size_t) { self->on_body(error); });
   }
 
   void on_body(error_code error) {
+    end_wait();
+    if (error && late_) {
+      const auto time =
+          std::chrono::duration_cast<std::chrono::seconds>(server_.settings().body_time);
+      return answer(
+          refusal(http::status::request_timeout,
+                  fmt::format("the model did not arrive within {} s; send a smaller one, or start "
+                              "arris view with its file",
+                              time.count())));
+    }
     if (error == http::error::body_limit) {
       return answer(refusal(http::status::payload_too_large, "too large"));
+    }
+    if (is_malformed(error)) {
+      return answer(refusal(http::status::bad_request, "the model is cut short or garbled"));
     }
     if (error) return;
     try {
       const std::filesystem::path file = server_.upload_file(extension_);
       std::string body = std::move(parser_.get().body());
       write_file_whole(file, {reinterpret_cast<const std::uint8_t*>(body.data()), body.size()});
-      stream_.expires_never();
+      // The next one may come while this is prepared, and takes its place.
+      end_upload();
       server_.renderer().open(
           file, shown_name(), [self = shared_from_this(), file](const std::string& problem) {
             std::error_code ignored;
@@ -255,11 +313,25 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
     response_.keep_alive(false);
     response_.body() = std::move(what.body);
     response_.prepare_payload();
-    stream_.expires_after(kBodyTime);
-    http::async_write(stream_, response_, [self = shared_from_this()](error_code, std::size_t) {
-      error_code ignored;
-      self->stream_.socket().shutdown(asio::ip::tcp::socket::shutdown_send, ignored);
-    });
+    stream_.expires_after(counted_ ? server_.settings().body_time : server_.settings().header_time);
+    http::async_write(
+        stream_, response_, [self = shared_from_this()](error_code error, std::size_t) {
+          if (error) return;
+          error_code ignored;
+          self->stream_.socket().shutdown(asio::ip::tcp::socket::shutdown_send, ignored);
+          self->stream_.expires_after(kLingerTime);
+          self->discard();
+        });
+  }
+
+  // Until the client has read what it was told, and closes.
+  void discard() {
+    constexpr std::size_t kPiece = 16384;
+    buffer_.clear();
+    stream_.async_read_some(buffer_.prepare(kPiece),
+                            [self = shared_from_this()](error_code error, std::size_t) {
+                              if (!error) self->discard();
+                            });
   }
 
   // Older browsers don't take a WebSocket for the page's own origin.
@@ -279,13 +351,15 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
 
   ViewServer::Impl& server_;
   beast::tcp_stream stream_;
+  asio::steady_timer timer_;
   beast::flat_buffer buffer_{kMostHeaderBytes + 65536};
   http::request_parser<http::string_body> parser_;
   http::response<http::string_body> response_;
   Target target_;
   std::string extension_;
   bool uploading_ = false;
-  bool counted_ = true;
+  bool reading_ = false, late_ = false;
+  bool counted_ = false;  // it has shown the token
 };
 
 }  // namespace

@@ -11,6 +11,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "io/child_process.h"
 #include "view/client_queue.h"
@@ -21,11 +22,12 @@ namespace arris::view {
 namespace asio = boost::asio;
 
 // Bounds, for all clients together where it says so.
-inline constexpr std::size_t kMostConnections = 64, kMostClients = 8;
+inline constexpr std::size_t kMostStrangers = 32, kMostConnections = 64, kMostClients = 8;
 inline constexpr std::uint32_t kMostHeaderBytes = 8192;
 inline constexpr std::uint64_t kMostUploadBytes = std::uint64_t(256) << 20;
-inline constexpr auto kHeaderTime = std::chrono::seconds(10), kBodyTime = std::chrono::seconds(120),
-                      kIdleTime = std::chrono::seconds(60);
+inline constexpr auto kIdleTime = std::chrono::seconds(60);
+// Who sends on while being answered would lose the answer if the connection ended at once.
+inline constexpr auto kLingerTime = std::chrono::seconds(2);
 
 // A page that looks: the WebSocket's end that the server knows.
 class ClientSession {
@@ -35,6 +37,13 @@ class ClientSession {
   virtual void put(std::shared_ptr<const ViewFrame> frame) = 0;
   [[nodiscard]] virtual std::optional<Clock::time_point> next_send() const = 0;
   virtual void close() = 0;
+};
+
+// A connection that has not shown the token.
+class Stranger {
+ public:
+  virtual ~Stranger() = default;
+  virtual void drop() = 0;  // its end comes later, but no answer
 };
 
 class ViewServer::Impl {
@@ -58,8 +67,11 @@ class ViewServer::Impl {
   void remove_client(ClientId client);
   void update_ready();
 
-  // False: too many are there.
-  bool add_connection();
+  // Of too many the oldest is dropped.
+  void add_stranger(Stranger& stranger);
+  void remove_stranger(Stranger& stranger) { std::erase(strangers_, &stranger); }
+  // It has shown the token, and counts until remove_connection(). False: too many are there.
+  bool admit(Stranger& stranger);
   void remove_connection() { --connections_; }
 
   bool begin_upload();  // false: there is one already
@@ -79,6 +91,7 @@ class ViewServer::Impl {
   std::string token_;
   // Sessions that end with the context look at these.
   std::size_t connections_ = 0;
+  std::vector<Stranger*> strangers_;  // the oldest first
   bool uploading_ = false;
   asio::io_context context_{1};
   asio::ip::tcp::acceptor acceptor_{context_};

@@ -30,7 +30,7 @@ class SocketSession : public ClientSession, public std::enable_shared_from_this<
   SocketSession& operator=(const SocketSession&) = delete;
 
   void start() {
-    websocket::stream_base::timeout timeout{kHeaderTime, kIdleTime, true};
+    websocket::stream_base::timeout timeout{server_.settings().header_time, kIdleTime, true};
     socket_.set_option(timeout);
     socket_.read_message_max(kMaxMessageBytes);
     socket_.auto_fragment(false);

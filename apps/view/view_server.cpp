@@ -51,7 +51,8 @@ std::optional<std::filesystem::file_time_type> time_of(const std::filesystem::pa
 }  // namespace
 
 ViewServer::Impl::Impl(ViewModel model, ViewRendererSettings renderer, ServerSettings settings)
-    : settings_(std::move(settings)), token_(make_token()) {
+    : settings_(std::move(settings)),
+      token_(settings_.token.empty() ? make_token() : settings_.token) {
   if (settings_.watch) shown_time_ = watched_time_ = time_of(settings_.watched);
   listen();
   renderer_ = std::make_unique<ViewRenderer>(std::move(model), std::move(renderer));
@@ -154,13 +155,22 @@ void ViewServer::Impl::accept() {
       timer->async_wait([this, timer](error_code) { accept(); });
       return;
     }
-    if (add_connection()) start_http_session(*this, std::move(socket));
+    start_http_session(*this, std::move(socket));
     accept();
   });
 }
 
-bool ViewServer::Impl::add_connection() {
+void ViewServer::Impl::add_stranger(Stranger& stranger) {
+  strangers_.push_back(&stranger);
+  if (strangers_.size() <= kMostStrangers) return;
+  Stranger* oldest = strangers_.front();
+  strangers_.erase(strangers_.begin());
+  oldest->drop();
+}
+
+bool ViewServer::Impl::admit(Stranger& stranger) {
   if (connections_ >= kMostConnections) return false;
+  remove_stranger(stranger);
   ++connections_;
   return true;
 }

@@ -1,11 +1,14 @@
 // view_server.h — the viewer over HTTP and WebSocket (docs/view-protocol.md)
 // What       one thread serves the page, the WebSocket and files to save; the renderer's thread makes the frames
 // Guarantee  what clients send is bounded in size, number and time, whether or not they read; without the token nothing
-//            but the page's own files is to be had; nothing that a client sends becomes a path
+//            but the page's own files is to be had, and however many come without it, who has it gets in; nothing that
+//            a client sends becomes a path
 // Errors     arris::Error, kind failed: no such address to listen at
 #pragma once
 
+#include <chrono>
 #include <cstdint>
+#include <filesystem>
 #include <memory>
 #include <string>
 
@@ -19,6 +22,9 @@ struct ServerSettings {
   bool or_any_port = false;  // if that port is taken
   bool once = false;         // end when the last client has left
   bool allow_upload = false;
+  std::string token;  // is_good_token(); empty: a new one
+  // A request's head, its body, and the connection of who has been answered may take so long.
+  std::chrono::milliseconds header_time{5'000}, body_time{120'000};
   bool watch = false;  // show the model's file again when it changes
   std::filesystem::path watched;
 };

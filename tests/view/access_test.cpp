@@ -14,6 +14,15 @@ TEST(ViewAccess, tokens_are_128_bits_and_differ) {
   EXPECT_EQ(tokens.begin()->size(), 32U);
 }
 
+TEST(ViewAccess, given_tokens_are_long_and_plain) {
+  EXPECT_TRUE(is_good_token(make_token()));
+  EXPECT_TRUE(is_good_token("abcXYZ-_01234567"));
+  for (const char* token : {"", "abcXYZ-_0123456", "abcXYZ-_01234567 ", "abcXYZ-_0123456&",
+                            "abcXYZ-_0123456%41", "äöcXYZ-_0123456789"}) {
+    EXPECT_FALSE(is_good_token(token)) << token;
+  }
+}
+
 TEST(ViewAccess, secrets_are_the_same_only_as_a_whole) {
   EXPECT_TRUE(is_same_secret("abcd", "abcd"));
   EXPECT_FALSE(is_same_secret("abcd", "abce"));

@@ -127,12 +127,19 @@ TEST(ViewProgram, what_it_saves_can_be_rendered_and_viewed) {
   }
 }
 
+TEST(ViewProgram, keeps_the_token_that_it_is_given) {
+  const test::Workplace place;
+  const RunningView view(place, {(place / "cube.stl").string(), "--token", "a-token_of-mine-0123"});
+  EXPECT_EQ(view.token(), "a-token_of-mine-0123");
+}
+
 TEST(ViewProgram, bad_input_and_options_are_errors_before_an_address_is_printed) {
   const test::Workplace place;
   for (const auto& [words, text] : std::initializer_list<std::pair<const char*, const char*>>{
            {"view missing.stl", "missing.stl"},
            {"view cube.stl --port 70000", "--port"},
            {"view cube.stl --round 5", "radius"},
+           {"view cube.stl --token short", "16"},
            {"view cube.stl --host no.such.host.invalid --no-browser", "--host"},
            {"view - --watch", "--watch"}}) {
     const test::Outcome outcome = place.arris(words);

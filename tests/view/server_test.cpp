@@ -153,6 +153,70 @@ TEST_F(ViewServerTest, refuses_requests_that_are_too_long) {
   EXPECT_EQ(upload.status, 413);
 }
 
+TEST_F(ViewServerTest, who_has_the_token_gets_in_past_any_number_without_it) {
+  start();
+  std::vector<std::unique_ptr<test::Connection>> strangers;
+  for (int i = 0; i < 200; ++i) {
+    strangers.push_back(std::make_unique<test::Connection>(port_));
+    strangers.back()->send("GET / HTTP/1.1\r\n");
+  }
+  EXPECT_EQ(test::fetch(port_, Request(with_token("/"))).status, 200);
+  read_until_converged(*look());
+  // The oldest had to go.
+  EXPECT_FALSE(strangers.front()->read(1));
+}
+
+TEST_F(ViewServerTest, requests_that_are_none_are_answered) {
+  start();
+  const auto answer_to = [&](const std::string& bytes) {
+    test::Connection connection(port_);
+    connection.send(bytes);
+    return connection.read_all();
+  };
+  for (const char* bytes : {"what is this\r\n\r\n", "GET / HTTP/7.5\r\n\r\n",
+                            "GET / HTTP/1.1\r\nno colon\r\n\r\n", "\x16\x03\x01 hello\r\n\r\n"}) {
+    const std::string answer = answer_to(bytes);
+    EXPECT_THAT(answer, testing::StartsWith("HTTP/1.1 400 ")) << bytes;
+    EXPECT_THAT(answer, HasSubstr("open the address")) << bytes;
+  }
+}
+
+TEST_F(ViewServerTest, refuses_two_hosts) {
+  start();
+  const auto answer = test::fetch(port_, Request(with_token("/")).with("Host: evil.example\r\n"));
+  EXPECT_EQ(answer.status, 400);
+  EXPECT_THAT(answer.body, HasSubstr("Host"));
+}
+
+TEST_F(ViewServerTest, says_that_a_request_came_too_slowly) {
+  ServerSettings settings;
+  settings.header_time = std::chrono::milliseconds(200);
+  start(settings);
+  test::Connection connection(port_);
+  connection.send("GET / HT");
+  EXPECT_THAT(connection.read_all(), testing::StartsWith("HTTP/1.1 408 "));
+}
+
+TEST_F(ViewServerTest, says_that_a_model_came_too_slowly) {
+  ServerSettings settings;
+  settings.allow_upload = true;
+  settings.body_time = std::chrono::milliseconds(1000);
+  start(settings);
+  const auto answer = test::fetch(
+      port_, Request(with_token("/model?name=a.stl")).by("POST").with("Content-Length: 100\r\n"));
+  EXPECT_EQ(answer.status, 408);
+  EXPECT_THAT(answer.body, HasSubstr("within 1 s; send a smaller one"));
+}
+
+TEST_F(ViewServerTest, keeps_the_token_that_it_is_given) {
+  ServerSettings settings;
+  settings.token = "a-token_of-mine-0123";
+  start(settings);
+  EXPECT_EQ(token_, settings.token);
+  EXPECT_EQ(test::fetch(port_, Request("/?t=a-token_of-mine-0123")).status, 200);
+  EXPECT_EQ(test::fetch(port_, Request("/?t=a-token_of-mine-0124")).status, 403);
+}
+
 TEST_F(ViewServerTest, says_what_it_shows_and_sends_frames_until_the_view_has_converged) {
   start();
   auto socket = look();
