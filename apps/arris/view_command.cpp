@@ -1,11 +1,13 @@
 #include <fmt/format.h>
 #include <spawn.h>
 
+#include <chrono>
 #include <cstdint>
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
 #include <string>
+#include <thread>
 #include <utility>
 #include <vector>
 
@@ -121,6 +123,16 @@ void open_browser(const std::string& address) {
   posix_spawn_file_actions_destroy(&actions);
 }
 
+// What goes on beside the server stops soon, but for the reading of files, a structure that is being built and the
+// rounding of a single large mesh: the program waits for none of these. Nothing of them is to be kept.
+void end_soon() {
+  static constexpr auto kWait = std::chrono::milliseconds(600);
+  std::thread([] {
+    std::this_thread::sleep_for(kWait);
+    std::_Exit(0);
+  }).detach();
+}
+
 }  // namespace
 
 int run_view(const Arguments& arguments) {
@@ -152,6 +164,7 @@ int run_view(const Arguments& arguments) {
   if (server.is_open_to_all()) console.report("all that can reach this machine can reach it");
   if (!arguments.has("--no-browser") && has_desktop()) open_browser(server.address());
   server.run();
+  end_soon();
   return 0;
 }
 

@@ -27,12 +27,24 @@ void BeamWorker::start(Scene scene, int threads, std::function<void()> changed) 
     const std::lock_guard lock(mutex_);
     next_ = Request{std::move(scene), threads, std::move(changed)};
     stop_ = true;
+    status_.reset();
     png_.clear();
     if (running_) return;
     running_ = true;
   }
   if (thread_.joinable()) thread_.join();
   thread_ = std::thread([this] { run(); });
+}
+
+void BeamWorker::stop() {
+  const std::lock_guard lock(mutex_);
+  // The thread may be on its way out.
+  const bool is_made = next_ || (running_ && !stop_);
+  next_.reset();
+  stop_ = true;
+  if (!is_made && status_) return;  // there is something to be said
+  const bool ready = !png_.empty();
+  status_ = Status{ready ? 1.0 : 0.0, ready, !ready, ""};
 }
 
 void BeamWorker::run() {
@@ -50,7 +62,7 @@ void BeamWorker::run() {
     try {
       render(*request);
     } catch (const std::exception& error) {
-      if (!stop_) set_status(*request, {0, false, error.what()});
+      set_status(*request, {0, false, false, error.what()});
     }
   }
 }
@@ -71,9 +83,10 @@ void BeamWorker::render(const Request& request) {
     constexpr double kStep = 0.01;
     if (progress.done < said + kStep || progress.done >= 1) return;
     said = progress.done;
-    set_status(request, {progress.done, false, ""});
+    set_status(request, {progress.done, false, false, ""});
   };
   RenderResult result = make_beam_renderer()->render(*prepared, options);
+  if (stop_) return;
   result.picture.layers.clear();
   SaveOptions save;
   save.exposure = request.scene.image.exposure;
@@ -82,13 +95,15 @@ void BeamWorker::render(const Request& request) {
     const std::lock_guard lock(mutex_);
     if (stop_) return;
     png_ = std::move(png);
+    status_ = Status{1, true, false, ""};
   }
-  set_status(request, {1, true, ""});
+  request.changed();
 }
 
 void BeamWorker::set_status(const Request& request, Status status) {
   {
     const std::lock_guard lock(mutex_);
+    if (stop_) return;
     status_ = std::move(status);
   }
   request.changed();

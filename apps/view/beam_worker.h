@@ -1,5 +1,6 @@
 // beam_worker.h — beam pictures of views, beside their frames
 // What       start() makes one in a thread of its own, in place of one that is being made
+// Guarantee  a picture that was stopped or replaced says nothing any more
 // Limits     meshes are seen as they are, not rounded
 #pragma once
 
@@ -20,7 +21,7 @@ class BeamWorker {
  public:
   struct Status {
     double done = 0;
-    bool ready = false;
+    bool ready = false, stopped = false;
     std::string error;
   };
 
@@ -32,6 +33,8 @@ class BeamWorker {
 
   // changed: called in the other thread when status() has changed.
   void start(Scene scene, int threads, std::function<void()> changed);
+  // take_status() says that it was stopped, or, if nothing was being made, how things are.
+  void stop();
   // What is new since the last call.
   std::optional<Status> take_status();
   // As PNG; empty: there is none.
@@ -51,7 +54,7 @@ class BeamWorker {
   std::optional<Request> next_;
   std::optional<Status> status_;
   std::vector<std::uint8_t> png_;
-  std::atomic<bool> stop_ = false;  // of the picture that is being made
+  std::atomic<bool> stop_ = false;  // nobody wants what is being made
   bool ended_ = false, running_ = false;
   std::thread thread_;
 };

@@ -19,7 +19,7 @@ void add_little_endian(std::string& out, std::uint32_t value, int bytes) {
 }
 
 bool is_of_now(const std::string& type) {
-  return type == "scene" || type == "state" || type == "busy" || type == "beam";
+  return type == "scene" || type == "camera" || type == "state" || type == "busy" || type == "beam";
 }
 
 }  // namespace
@@ -28,8 +28,12 @@ void ClientQueue::put(const ViewText& text) {
   if ((text.to && *text.to != client_) || (text.but_not && *text.but_not == client_)) return;
   if (is_of_now(text.type)) {
     std::erase_if(texts_, [&](const Waiting& waiting) { return waiting.type == text.type; });
+  } else {
+    const auto counts = [](const Waiting& waiting) { return !is_of_now(waiting.type); };
+    if (std::size_t(std::ranges::count_if(texts_, counts)) >= kMostTexts) {
+      texts_.erase(std::ranges::find_if(texts_, counts));
+    }
   }
-  if (texts_.size() >= kMostTexts) texts_.pop_front();
   texts_.push_back({text.type, text.text});
 }
 

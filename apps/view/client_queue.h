@@ -1,7 +1,7 @@
 // client_queue.h — what is to be sent to one client
 // What       of frames, and of texts that say how things are, only the newest waits; a frame is handed out when the one
 //            before is acknowledged
-// Guarantee  bounded, however slow the client is; the last frame is never lost
+// Guarantee  bounded, however slow the client is; the last frame is never lost, nor how things are
 #pragma once
 
 #include <cstddef>

@@ -18,7 +18,8 @@ Placement placement_of(const ViewModel& model) {
 }
 
 PrepareOptions prepare_options(const ViewModel& model, const BuildSettings& settings) {
-  return {.threads = settings.threads, .stop = settings.stop, .placement = placement_of(model)};
+  return {
+      .threads = settings.threads, .stop = settings.stop.get(), .placement = placement_of(model)};
 }
 
 ScenePtr prepare_anew(const ViewModel& model, const ViewEdits& edits,
@@ -92,13 +93,14 @@ std::unique_ptr<EdgePointEngine> make_engine(const ViewModel& model, const Scene
   engine_settings.shader = edits.shader;
   engine_settings.threads = settings.threads;
   engine_settings.trace_below_ms = settings.trace_below_ms;
+  engine_settings.stop = settings.stop.get();
   auto engine = std::make_unique<EdgePointEngine>(scene, engine_settings);
   engine->set_camera(edits.camera);
   constexpr int kMostFrames = 8;
   constexpr auto kShading = std::chrono::milliseconds(25);
   for (int frame = 0; frame < kMostFrames; ++frame) {
     engine->next_frame();
-    if (shows_enough(engine->stats()) || (settings.stop != nullptr && *settings.stop)) break;
+    if (shows_enough(engine->stats())) break;
     std::this_thread::sleep_for(kShading);
   }
   return engine;
@@ -117,6 +119,7 @@ ShownView build_view(std::shared_ptr<const ViewModel> model, const ViewEdits& ed
       before && before->model == model && find_work(before->edits, edits) < ViewWork::prepare;
   const UsableView* use = is_usable ? &*before : nullptr;
   ShownView view;
+  view.stop = settings.stop;
   view.edits = edits;
   view.staged = stage_view(*model, edits);
   const ScenePtr main = make_scene(*model, edits, view.staged, settings, use);

@@ -16,7 +16,11 @@
 
 namespace arris::view {
 
+// Ends what is prepared or made of a view: all of it throws Error{failed} then.
+using StopFlag = std::shared_ptr<std::atomic<bool>>;
+
 struct ShownView {
+  StopFlag stop;  // first: the engines look at it
   std::shared_ptr<const ViewModel> model;
   ViewEdits edits;
   StagedView staged;
@@ -28,7 +32,7 @@ struct ShownView {
 struct BuildSettings {
   int threads = 0;
   double trace_below_ms = 16;  // EdgePointSettings::trace_below_ms
-  const std::atomic<bool>* stop = nullptr;
+  StopFlag stop = std::make_shared<std::atomic<bool>>(false);
 };
 
 // What of a view before can be used. Its scenes are const, its engine goes on.

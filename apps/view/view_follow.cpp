@@ -49,6 +49,9 @@ void ViewRenderer::Loop::follow_edits() {
     view_.edits.split = desired_.split;
     return;
   }
+  if (next_open_ && next_open_->keeps_edits && next_open_->file != view_.model->file) {
+    next_open_.reset();  // it is no longer shown
+  }
   if (next_open_) return start_open();
   switch (find_work(view_.edits, desired_)) {
     case ViewWork::none:
@@ -101,7 +104,7 @@ void ViewRenderer::Loop::note_shown_changes() {
       add_marks(shown_, asked_.front().marks);
       asked_.pop_front();
     }
-    if (asked_.empty()) send_scene_soon({});
+    if (asked_.empty()) send_scene_soon();
     return;
   }
 }
@@ -126,7 +129,7 @@ void ViewRenderer::Loop::undo_asked(const std::string& error) {
   }
   add_marks(shown_, marks);
   send_errors(marks, error);
-  send_scene_soon({});
+  send_scene_soon();
 }
 
 // Builds.
@@ -170,9 +173,11 @@ void ViewRenderer::Loop::finish_build() {
   try {
     std::optional<ShownView> view = build_.take();
     if (!view) return;
+    if (*build_stop_) throw Error(Error::Kind::failed, "", "stopped");
     take_view(std::move(*view));
   } catch (const std::exception& problem) {
     error = problem.what();
+    if (*build_stop_) return drop_build();
     if (opening_ && !opening_->keeps_edits) {
       replace_all(error, opening_->file.string(), opening_->name);
     }
@@ -193,7 +198,14 @@ void ViewRenderer::Loop::finish_build() {
   pace_.note_change(Clock::now());
   pace_.hurry(Clock::now());
   set_busy("");
-  send_scene_soon({});
+  send_scene_soon();
+}
+
+// Another model is to be shown. What was asked of this one goes on with it, if it is the same one again.
+void ViewRenderer::Loop::drop_build() {
+  add_marks(unasked_, std::exchange(building_, {}));
+  if (opening_ && opening_->done) opening_->done("another model was opened meanwhile");
+  opening_.reset();
 }
 
 void ViewRenderer::Loop::take_view(ShownView view) {

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <exception>
 #include <iterator>
+#include <utility>
 #include <variant>
 
 #include "arris/error.h"
@@ -41,6 +42,7 @@ ViewRenderer::Loop::~Loop() {
   stopped_ = true;
   {
     const std::lock_guard lock(mutex_);
+    for (const StopFlag& stop : stops_) *stop = true;
     woken_ = true;
   }
   wake_.notify_all();
@@ -57,8 +59,18 @@ void ViewRenderer::Loop::start(ViewOutputs outputs) {
   thread_ = std::thread([this] { run(); });
 }
 
-BuildSettings ViewRenderer::Loop::build_settings() const {
-  return {settings_.threads, settings_.trace_below_ms, &stopped_};
+BuildSettings ViewRenderer::Loop::build_settings() {
+  build_stop_ = std::make_shared<std::atomic<bool>>(false);
+  const std::lock_guard lock(mutex_);
+  std::erase_if(stops_, [](const StopFlag& stop) { return stop.use_count() == 1; });
+  stops_.push_back(build_stop_);
+  if (stopped_) *build_stop_ = true;
+  return {settings_.threads, settings_.trace_below_ms, build_stop_};
+}
+
+// finish_build() hears of it.
+void ViewRenderer::Loop::cancel_build() {
+  if (build_.is_running()) *build_stop_ = true;
 }
 
 // What any thread may call.
@@ -121,7 +133,7 @@ void ViewRenderer::Loop::step() {
   follow_edits();
   poll_beam();
   if (wants_frame() && Clock::now() >= frame_due(send)) make_frame();
-  if (scene_dirty_ && Clock::now() >= scene_sent_ + kSceneInterval) send_scene();
+  if (has_news() && Clock::now() >= scene_sent_ + kSceneInterval) send_scene();
 }
 
 bool ViewRenderer::Loop::wants_frame() const {
@@ -141,7 +153,7 @@ void ViewRenderer::Loop::wait() {
   const auto is_woken = [&] { return woken_ || stopped_; };
   std::optional<Clock::time_point> until;
   if (wants_frame()) until = frame_due(next_send_);
-  if (scene_dirty_) {
+  if (has_news()) {
     const Clock::time_point due = scene_sent_ + kSceneInterval;
     until = until ? std::min(*until, due) : due;
   }
@@ -168,8 +180,9 @@ void ViewRenderer::Loop::take_inputs() {
                          error.what()),
            input.client);
       // The page is to show what is, not what was asked for.
-      send_scene_soon({});
+      send_scene_soon();
     }
+    add_marks(taken_, input.marks);
   }
 }
 
@@ -179,6 +192,11 @@ void ViewRenderer::Loop::apply(const Input& input) {
   if (std::holds_alternative<MakeBeam>(input.what)) {
     add_marks(shown_, input.marks);
     return start_beam();
+  }
+  if (std::holds_alternative<StopBeam>(input.what)) {
+    add_marks(shown_, input.marks);
+    beam_.stop();
+    return;
   }
   if (const auto* quality = std::get_if<SetQuality>(&input.what)) {
     quality_ = *quality;
@@ -197,10 +215,13 @@ void ViewRenderer::Loop::apply(const Input& input) {
   } else {
     pace_.hurry(now);
   }
+  if (!std::holds_alternative<SetCamera>(input.what)) return send_scene_soon();
   // A client knows the camera that it has set.
-  const bool is_camera = std::holds_alternative<SetCamera>(input.what);
-  if (!is_camera || clients_.size() > 1) {
-    send_scene_soon(is_camera ? std::optional(input.client) : std::nullopt);
+  if (clients_.size() > 1) {
+    camera_but_not_ = camera_dirty_ && camera_but_not_ != input.client
+                          ? std::nullopt
+                          : std::optional(input.client);
+    camera_dirty_ = true;
   }
 }
 
@@ -225,13 +246,13 @@ void ViewRenderer::Loop::start_beam() {
   ViewEdits sharp = desired_;
   sharp.rounding.method = RoundMethod::none;
   Scene scene = stage_view(*view_.model, sharp, RoundMethod::none).scene;
-  send("beam", beam_message(0, false, ""));
+  send("beam", beam_message({}));
   beam_.start(std::move(scene), settings_.threads, [this] { post([] {}); });
 }
 
 void ViewRenderer::Loop::poll_beam() {
   if (const auto status = beam_.take_status()) {
-    send("beam", beam_message(status->done, status->ready, status->error));
+    send("beam", beam_message(*status));
   }
 }
 
@@ -241,7 +262,7 @@ void ViewRenderer::Loop::join(ClientId client) {
   clients_.push_back(client);
   settled_ = false;
   pace_.hurry(Clock::now());
-  send("scene", scene_message(view_, desired_, settings_.upload), client);
+  send("scene", with_seq(scene_message(view_, desired_, settings_.upload), 0), client);
   if (!busy_.empty()) send("busy", busy_message(busy_), client);
 }
 
@@ -249,6 +270,7 @@ void ViewRenderer::Loop::leave(ClientId client) {
   std::erase(clients_, client);
   const auto is_theirs = [&](const InputMark& mark) { return mark.client == client; };
   std::erase_if(shown_, is_theirs);
+  std::erase_if(taken_, is_theirs);
   std::erase_if(unasked_, is_theirs);
   std::erase_if(building_, is_theirs);
   for (Asked& asked : asked_) std::erase_if(asked.marks, is_theirs);
@@ -268,15 +290,18 @@ void ViewRenderer::Loop::send_errors(const std::vector<InputMark>& marks,
   for (const InputMark& mark : marks) send("error", error_message(mark.seq, what), mark.client);
 }
 
-void ViewRenderer::Loop::send_scene_soon(std::optional<ClientId> but_not) {
-  scene_but_not_ = scene_dirty_ && scene_but_not_ != but_not ? std::nullopt : but_not;
-  scene_dirty_ = true;
-}
-
+// Or only the camera, to those who have not set it.
 void ViewRenderer::Loop::send_scene() {
-  scene_dirty_ = false;
   scene_sent_ = Clock::now();
-  send("scene", scene_message(view_, desired_, settings_.upload), {}, scene_but_not_);
+  if (std::exchange(camera_dirty_, false) && !scene_dirty_) {
+    return send("camera", camera_message(desired_.camera), {}, camera_but_not_);
+  }
+  scene_dirty_ = false;
+  const std::string text = scene_message(view_, desired_, settings_.upload);
+  for (const ClientId client : clients_) {
+    const auto mark = std::ranges::find(taken_, client, &InputMark::client);
+    send("scene", with_seq(text, mark == taken_.end() ? 0 : mark->seq), client);
+  }
 }
 
 void ViewRenderer::Loop::set_busy(const std::string& what) {
@@ -333,12 +358,15 @@ void ViewRenderer::Loop::open(std::filesystem::path file, std::string name,
                               std::function<void(const std::string&)> done) {
   if (next_open_ && next_open_->done) next_open_->done("another model was opened meanwhile");
   next_open_ = OpenRequest{std::move(file), std::move(name), false, std::move(done)};
+  cancel_build();
 }
 
 void ViewRenderer::Loop::reload() {
   const ViewModel& model = *view_.model;
   if (model.file.empty() || next_open_) return;
   next_open_ = OpenRequest{model.file, model.name, true, nullptr};
+  // An upload that is prepared is to be shown instead, if it can be.
+  if (!opening_ || opening_->keeps_edits) cancel_build();
 }
 
 }  // namespace arris::view

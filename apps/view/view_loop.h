@@ -71,6 +71,7 @@ class ViewRenderer::Loop {
   void start_open();
   void step();
   void finish_build();
+  void drop_build();
   void take_view(ShownView view);
   void tell_engines();
   void note_shown_changes();
@@ -85,12 +86,14 @@ class ViewRenderer::Loop {
   const Image& compose(const Image& main, const Image* right);
   void send_state(bool now);
   void send_scene();
-  void send_scene_soon(std::optional<ClientId> but_not);
+  void send_scene_soon() { scene_dirty_ = true; }
+  [[nodiscard]] bool has_news() const { return scene_dirty_ || camera_dirty_; }
   void send_errors(const std::vector<InputMark>& marks, const std::string& what) const;
   void send(const char* type, std::string text, std::optional<ClientId> to = {},
             std::optional<ClientId> but_not = {}) const;
   void set_busy(const std::string& what);
-  [[nodiscard]] BuildSettings build_settings() const;
+  [[nodiscard]] BuildSettings build_settings();
+  void cancel_build();
 
   // What all threads look at.
   std::mutex mutex_;
@@ -100,6 +103,7 @@ class ViewRenderer::Loop {
   std::optional<Clock::time_point> next_send_;
   bool woken_ = false;
   std::atomic<bool> stopped_ = false;
+  std::vector<StopFlag> stops_;  // of views that are built and shown
 
   ViewRendererSettings settings_;
   ViewOutputs outputs_;
@@ -112,9 +116,11 @@ class ViewRenderer::Loop {
   std::vector<InputMark> unasked_;  // of inputs that `desired_` has and no engine or build yet
   std::deque<Asked> asked_;
   std::vector<InputMark> shown_;
+  std::vector<InputMark> taken_;  // of inputs that `desired_` has, or that were refused
   std::vector<InputMark> building_;
   ViewEdits built_;  // what is being built
   BackgroundJob<ShownView> build_;
+  StopFlag build_stop_;
   std::optional<OpenRequest> opening_;  // being built
   std::optional<OpenRequest> next_open_;
   std::string busy_;
@@ -128,8 +134,8 @@ class ViewRenderer::Loop {
   bool settled_ = false;  // nothing to be seen would change
   std::uint32_t frame_number_ = 0;
   std::vector<ClientId> clients_;
-  bool scene_dirty_ = false;
-  std::optional<ClientId> scene_but_not_;
+  bool scene_dirty_ = false, camera_dirty_ = false;
+  std::optional<ClientId> camera_but_not_;  // who has set it; empty: several
   Clock::time_point scene_sent_, state_sent_;
   double planned_points_ = 0;  // what the shader was asked for with the last frame
 

@@ -263,6 +263,7 @@ const Names<Parse> kParsers{
     {"overlay", [](const Keys& keys) -> MessageKind { return SetOverlay{keys.flag("on")}; }},
     {"pick", [](const Keys& keys) -> MessageKind { return parse_pick(keys); }},
     {"beam", [](const Keys&) -> MessageKind { return MakeBeam{}; }},
+    {"beam_stop", [](const Keys&) -> MessageKind { return StopBeam{}; }},
     {"quality", [](const Keys& keys) -> MessageKind { return parse_quality(keys); }},
 };
 

@@ -85,13 +85,14 @@ struct Pick {
   double x = 0, y = 0;  // pixels
 };
 struct MakeBeam {};
+struct StopBeam {};
 struct SetQuality {
   int moving = 60, still = 90;
 };
 
 using MessageKind = std::variant<Hello, Ack, SetSize, SetCamera, FrameView, SetRounding, SetObject,
                                  Isolate, SetLight, SetMaterial, SetGround, SetShader, Compare,
-                                 SetOverlay, Pick, MakeBeam, SetQuality>;
+                                 SetOverlay, Pick, MakeBeam, StopBeam, SetQuality>;
 
 struct ClientMessage {
   std::optional<std::uint32_t> seq;

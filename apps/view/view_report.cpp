@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 #include <variant>
+#include <vector>
 
 #include "render/prepared_scene.h"
 #include "scene/material_presets.h"
@@ -52,12 +53,14 @@ json to_json(const PictureSize& size) {
   return {size.width_px, size.height_px};
 }
 
-double rounded_radius(const PreparedScene& prepared, std::optional<std::uint32_t> index) {
-  if (!index) return 0;
+// By the prepared scene's objects; 0: not rounded.
+std::vector<double> rounded_radii(const PreparedScene& prepared) {
+  std::vector<double> radii(scene_of(prepared).objects.size());
   for (const RoundingSummary& summary : prepare_stats(prepared).rounding) {
-    if (summary.object_index == *index) return summary.radius;
+    double& radius = radii[summary.object_index];
+    if (radius == 0) radius = summary.radius;
   }
-  return 0;
+  return radii;
 }
 
 json object_json(const ViewModel& model, const ViewEdits& edits, std::size_t i,
@@ -81,14 +84,17 @@ json object_json(const ViewModel& model, const ViewEdits& edits, std::size_t i,
 
 std::string scene_message(const ShownView& view, const ViewEdits& edits, bool upload) {
   const ViewModel& model = *view.model;
-  json objects = json::array();
+  json objects = json::array(), lightings = json::array();
+  for (const LightChoice choice : lightings_of(model)) lightings.push_back(name_of(choice));
+  const std::vector<double> radii = rounded_radii(*view.engine->scene());
   Bounds all;
   for (std::size_t i = 0; i < edits.objects.size(); ++i) {
     const Bounds bounds = moved_bounds(view.bounds[i], model.scene.objects[i].world_from_object,
                                        edits.objects[i].world_from_object);
     all.add(bounds);
     objects.push_back(object_json(model, edits, i, bounds));
-    objects.back()["rounded"] = rounded_radius(*view.engine->scene(), view.staged.index_of[i]);
+    const auto index = view.staged.index_of[i];
+    objects.back()["rounded"] = index ? radii[*index] : 0;
   }
   json out{{"type", "scene"},
            {"name", model.name},
@@ -96,6 +102,7 @@ std::string scene_message(const ShownView& view, const ViewEdits& edits, bool up
            {"up", to_json(model.scene.up)},
            {"rounding", to_json(edits.rounding)},
            {"lighting", name_of(edits.lighting)},
+           {"lightings", std::move(lightings)},
            {"strength", edits.strength},
            {"rotation", edits.rotation_deg},
            {"material", nullptr},
@@ -114,6 +121,16 @@ std::string scene_message(const ShownView& view, const ViewEdits& edits, bool up
   const bool is_there = !all.is_empty();
   out["bounds"] = {{"lower", to_json(is_there ? all.lower : Vec3d())},
                    {"upper", to_json(is_there ? all.upper : Vec3d())}};
+  return to_text(out);
+}
+
+std::string with_seq(const std::string& scene_message, std::uint32_t seq) {
+  return fmt::format("{},\"seq\":{}}}", scene_message.substr(0, scene_message.size() - 1), seq);
+}
+
+std::string camera_message(const Camera& camera) {
+  json out = to_json(camera);
+  out["type"] = "camera";
   return to_text(out);
 }
 
@@ -159,9 +176,10 @@ std::string picked_message(std::optional<std::uint32_t> seq, const std::optional
   return to_text(out);
 }
 
-std::string beam_message(double done, bool ready, const std::string& error) {
-  json out{{"type", "beam"}, {"done", done}, {"ready", ready}};
-  if (!error.empty()) out["error"] = error;
+std::string beam_message(const BeamWorker::Status& status) {
+  json out{{"type", "beam"}, {"done", status.done}, {"ready", status.ready}};
+  if (status.stopped) out["stopped"] = true;
+  if (!status.error.empty()) out["error"] = status.error;
   return to_text(out);
 }
 

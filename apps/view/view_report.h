@@ -8,12 +8,16 @@
 #include "arris/edge_point.h"
 #include "arris/render.h"
 #include "render/shoot.h"
+#include "view/beam_worker.h"
 #include "view/shown_view.h"
 
 namespace arris::view {
 
 // edits: what the view is to be, which may be ahead of what it shows. upload: whether models may be dropped.
 std::string scene_message(const ShownView& view, const ViewEdits& edits, bool upload);
+// The same for one client: the newest of its inputs that is in it, or 0.
+std::string with_seq(const std::string& scene_message, std::uint32_t seq);
+std::string camera_message(const Camera& camera);
 
 struct ViewState {
   double fps = 0, frame_ms = 0, seconds = 0;
@@ -25,7 +29,7 @@ std::string state_message(const ViewState& state, const PreparedScene& prepared)
 
 std::string picked_message(std::optional<std::uint32_t> seq, const std::optional<Shot>& shot,
                            std::optional<std::uint32_t> object);
-std::string beam_message(double done, bool ready, const std::string& error);
+std::string beam_message(const BeamWorker::Status& status);
 // Empty: the work has ended.
 std::string busy_message(const std::string& what);
 // What follows the first "; " is the remedy.

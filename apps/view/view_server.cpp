@@ -59,7 +59,8 @@ ViewServer::Impl::Impl(ViewModel model, ViewRendererSettings renderer, ServerSet
 }
 
 ViewServer::Impl::~Impl() {
-  renderer_.reset();  // it reads uploads
+  upload_folder_.reset();  // the program may not wait for all that the renderer does
+  renderer_.reset();
 }
 
 void ViewServer::Impl::listen() {

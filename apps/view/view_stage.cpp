@@ -48,6 +48,10 @@ LightChoice choice_of(std::optional<Lighting> lighting) {
   return LightChoice::file;
 }
 
+bool has_lights(const ViewModel& model) {
+  return model.scene.environment || !model.scene.lights.empty();
+}
+
 StageOptions stage_options(const ViewModel& model, const ViewEdits& edits) {
   StageOptions stage = model.stage;
   stage.lighting = lighting_of(edits.lighting);
@@ -193,6 +197,7 @@ struct Apply {
   void operator()(const Ack&) const {}
   void operator()(const Pick&) const {}
   void operator()(const MakeBeam&) const {}
+  void operator()(const StopBeam&) const {}
   void operator()(const SetQuality&) const {}
 
  private:
@@ -205,6 +210,12 @@ struct Apply {
 
 }  // namespace
 
+std::vector<LightChoice> lightings_of(const ViewModel& model) {
+  std::vector<LightChoice> out{LightChoice::studio, LightChoice::sky, LightChoice::white};
+  if (has_lights(model)) out.push_back(LightChoice::file);
+  return out;
+}
+
 ViewEdits first_edits(const ViewModel& model) {
   ViewEdits edits;
   Scene staged = model.scene;
@@ -215,8 +226,7 @@ ViewEdits first_edits(const ViewModel& model) {
   edits.camera = *staged.camera;
   edits.rounding = model.scene.rounding.value_or(RoundingSettings{});
   edits.lighting = choice_of(model.stage.lighting);
-  if (edits.lighting == LightChoice::file && !model.scene.environment &&
-      model.scene.lights.empty()) {
+  if (edits.lighting == LightChoice::file && !has_lights(model)) {
     edits.lighting = LightChoice::studio;
   }
   if (model.stage.material) edits.material = model.stage.material->name;

@@ -56,6 +56,9 @@ struct ViewEdits {
   bool overlay = false;
 };
 
+// studio, sky and white, and file where the model has lights of its own.
+std::vector<LightChoice> lightings_of(const ViewModel& model);
+
 // As the model is when it is opened: framed, staged. Throws if there is no room for its camera or ground.
 ViewEdits first_edits(const ViewModel& model);
 

@@ -10,6 +10,7 @@
 //            Rendering", SIGGRAPH 2003
 #pragma once
 
+#include <atomic>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
@@ -55,6 +56,8 @@ struct EdgePointSettings {
   // has_picture: the frame has one already, and it is about the next one; else next_frame() throws Error{failed} for
   // yes. Empty: never.
   std::function<bool(bool has_picture)> must_end;
+  // Set from any thread: next_frame(), and what the constructor prepares, end with Error{failed}.
+  const std::atomic<bool>* stop = nullptr;
 };
 
 struct EdgePointStats {

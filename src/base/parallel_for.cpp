@@ -7,12 +7,19 @@
 
 #include <algorithm>
 
+#include "arris/error.h"
 #include "base/happens_before.h"
 
 namespace arris {
 
 int usable_threads(int wanted) {
   return std::min(wanted, tbb::info::default_concurrency());
+}
+
+void end_if_stopped(const std::atomic<bool>* stop) {
+  if (stop != nullptr && *stop) {
+    throw Error(Error::Kind::failed, "", "stopped before the first sample");
+  }
 }
 
 void run_parallel(std::size_t count, const ParallelOptions& options, ParallelCall call,
@@ -23,6 +30,7 @@ void run_parallel(std::size_t count, const ParallelOptions& options, ParallelCal
   const auto run_range = [&](const tbb::blocked_range<std::size_t>& range) {
     fork.acquire();
     for (std::size_t i = range.begin(); i != range.end(); ++i) {
+      if (options.stop != nullptr && options.stop->load(std::memory_order_relaxed)) break;
       call(body, i);
     }
     join.release();
@@ -35,6 +43,7 @@ void run_parallel(std::size_t count, const ParallelOptions& options, ParallelCal
     tbb::parallel_for(all, run_range);
   }
   join.acquire();
+  end_if_stopped(options.stop);
 }
 
 }  // namespace arris

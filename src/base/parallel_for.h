@@ -7,6 +7,7 @@
 // Errors     an exception of a call ends the loop and comes out of it
 #pragma once
 
+#include <atomic>
 #include <cstddef>
 
 namespace arris {
@@ -14,7 +15,11 @@ namespace arris {
 struct ParallelOptions {
   std::size_t grain = 1;  // consecutive calls that one thread makes at a time, at least
   int threads = 0;        // 0: all
+  // Set from any thread: no further call begins, and the loop ends with an Error of kind failed.
+  const std::atomic<bool>* stop = nullptr;
 };
+// Throws that error, if it is set.
+void end_if_stopped(const std::atomic<bool>* stop);
 
 // Of the threads that are asked for, those there are processors for: TBB would warn of the rest, and run them
 // as little.

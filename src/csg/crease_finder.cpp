@@ -363,7 +363,7 @@ std::vector<CreaseSegment> join(const std::vector<std::vector<CreaseSegment>>& p
 }  // namespace
 
 std::vector<CreaseSegment> find_creases(const CellProbe& probe, const SmoothPatches& patches,
-                                        int threads) {
+                                        int threads, const std::atomic<bool>* stop) {
   std::vector<std::uint32_t> items;
   std::vector<Box3d> boxes;
   for (std::uint32_t i = 0; i < patches.patches().size(); ++i) {
@@ -378,7 +378,7 @@ std::vector<CreaseSegment> find_creases(const CellProbe& probe, const SmoothPatc
   };
   const std::size_t count = probe.cells().cells().size();
   std::vector<std::vector<CreaseSegment>> found(count + patches.mesh_edges().size());
-  parallel_for(found.size(), {.grain = 1, .threads = threads}, [&](std::size_t i) {
+  parallel_for(found.size(), {.grain = 1, .threads = threads, .stop = stop}, [&](std::size_t i) {
     if (i < count) {
       make(std::uint32_t(i), found[i]).find();
       return;

@@ -48,6 +48,6 @@ inline constexpr double kShortChord = 5e-4;
 inline constexpr double kTangent = radians(1);
 
 std::vector<CreaseSegment> find_creases(const CellProbe& probe, const SmoothPatches& patches,
-                                        int threads);
+                                        int threads, const std::atomic<bool>* stop = nullptr);
 
 }  // namespace arris

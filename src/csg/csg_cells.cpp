@@ -59,7 +59,7 @@ class Divider {
     std::vector<Draft> done;
     for (std::uint32_t depth = 0; !level.empty(); ++depth) {
       std::vector<std::vector<Draft>> parts(level.size());
-      parallel_for(level.size(), {.grain = 4, .threads = options_.threads},
+      parallel_for(level.size(), {.grain = 4, .threads = options_.threads, .stop = options_.stop},
                    [&](std::size_t i) { parts[i] = halve(std::move(level[i]), depth); });
       level.clear();
       for (std::vector<Draft>& part : parts) {

@@ -11,6 +11,7 @@
 //            cells as a union of n tiles.
 #pragma once
 
+#include <atomic>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -36,6 +37,7 @@ struct CellOptions {
   // Halvings beyond those that part n leaves: along curves where surfaces meet, halving pays for ever, and the
   // cells double.
   std::uint32_t more_depth = 14;
+  const std::atomic<bool>* stop = nullptr;  // set: Error{failed}
 };
 
 class CsgCells {

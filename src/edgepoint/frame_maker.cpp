@@ -74,11 +74,12 @@ void FrameMaker::forget() {
   std::fill(image_.points.begin(), image_.points.end(), PointKey());
 }
 
-void FrameMaker::find_points(const PixelView& view, const PointCache& cache, int threads) {
+void FrameMaker::find_points(const PixelView& view, const PointCache& cache,
+                             const ParallelOptions& parallel) {
   static_assert(kBandRows % DepthCells::kSide == 0, "bands are of whole cells");
-  const std::vector<RowBand> block_rows = find_block_rows(view, cache, threads);
+  const std::vector<RowBand> block_rows = find_block_rows(view, cache, parallel.threads);
   std::vector<std::vector<std::uint32_t>> seen(bands_.size());
-  parallel_for(bands_.size(), {.grain = 1, .threads = threads}, [&](std::size_t i) {
+  parallel_for(bands_.size(), parallel, [&](std::size_t i) {
     const RowBand band = bands_[i];
     seen[i].resize(block_rows.size() + 1);
     project_points(view, cache, block_rows, band, image_.points, seen[i]);
@@ -93,18 +94,20 @@ void FrameMaker::find_points(const PixelView& view, const PointCache& cache, int
     for (std::size_t i = 0; i < seen_.size(); ++i) seen_[i] += of_band[i];
   }
   const float size = pixel_size(view);
-  parallel_for(std::size_t(depth_.limit_rows()), {.grain = 16, .threads = threads},
+  parallel_for(std::size_t(depth_.limit_rows()),
+               {.grain = 16, .threads = parallel.threads, .stop = parallel.stop},
                [&](std::size_t i) { depth_.fill_limits(int(i), size); });
 }
 
 // Chunks of edges are projected and handed to the bands that they cross; those that are not in the picture to none.
-void FrameMaker::rasterize(const PixelView& view, const FrameEdges& edges, int threads) {
+void FrameMaker::rasterize(const PixelView& view, const FrameEdges& edges,
+                           const ParallelOptions& parallel) {
   std::vector<EdgeChunk> chunks;
   for (const std::span<const WorldEdge> list : edges.surfaces) add_chunks(list, chunks);
   add_chunks(edges.shadows, chunks);
   const std::size_t bands = bands_.size();
   if (screen_edges_.size() < chunks.size() * bands) screen_edges_.resize(chunks.size() * bands);
-  parallel_for(chunks.size(), {.grain = 1, .threads = threads}, [&](std::size_t c) {
+  parallel_for(chunks.size(), parallel, [&](std::size_t c) {
     const std::span of_bands = std::span(screen_edges_).subspan(c * bands, bands);
     for (std::vector<ScreenEdge>& list : of_bands) list.clear();
     const auto hand_out = [&](const ScreenEdge& edge) {
@@ -118,7 +121,7 @@ void FrameMaker::rasterize(const PixelView& view, const FrameEdges& edges, int t
     std::visit([&](const auto& chunk) { project_seen(view, chunk, depth_, seen); }, chunks[c]);
     std::ranges::for_each(seen, hand_out);
   });
-  parallel_for(bands, {.grain = 1, .threads = threads}, [&](std::size_t b) {
+  parallel_for(bands, parallel, [&](std::size_t b) {
     clear_crossings(bands_[b], image_.height_px, image_.crossings);
     for (std::size_t c = 0; c < chunks.size(); ++c) {
       rasterize_edges(screen_edges_[c * bands + b], depth_, bands_[b], image_.width_px,
@@ -132,11 +135,11 @@ FrameReport FrameMaker::make(const PixelView& view, const FrameEdges& edges, Poi
   ARRIS_CHECK(view.width_px == image_.width_px && view.height_px == image_.height_px,
               double(view.width_px), double(view.height_px));
   FrameReport report;
-  const ParallelOptions parallel{.grain = 1, .threads = settings.threads};
+  const ParallelOptions parallel{.grain = 1, .threads = settings.threads, .stop = settings.stop};
   Stopwatch watch;
-  find_points(view, cache, settings.threads);
+  find_points(view, cache, parallel);
   report.times.points = watch.lap();
-  rasterize(view, edges, settings.threads);
+  rasterize(view, edges, parallel);
   report.times.raster = watch.lap();
 
   std::vector<PixelClasses> classes(bands_.size());
@@ -183,7 +186,7 @@ FrameReport FrameMaker::make(const PixelView& view, const FrameEdges& edges, Poi
   }
   cache.set_seen(seen_);
   report.unresolved = unresolved.size();
-  holes_.fill(image_, unresolved, settings.threads, picture);
+  holes_.fill(image_, unresolved, parallel, picture);
   const double took = watch.lap();
   const double part = spent.total() > 0 ? took / spent.total() : 0;
   report.times.interpolation = part * spent.interpolation;

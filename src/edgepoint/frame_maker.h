@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "arris/image.h"
+#include "base/parallel_for.h"
 #include "edgepoint/classify.h"
 #include "edgepoint/depth_cells.h"
 #include "edgepoint/edge_point_image.h"
@@ -48,6 +49,7 @@ struct FrameSettings {
   bool edges_are_missing = false;
   // Something has changed not long ago: of points within reach those that are not stale count (fresh_samples.h).
   bool points_may_be_stale = false;
+  const std::atomic<bool>* stop = nullptr;  // set: Error{failed}, and no picture
 };
 
 struct FrameEdges {
@@ -70,8 +72,8 @@ class FrameMaker {
   [[nodiscard]] std::span<const std::uint8_t> wanted() const { return wanted_; }
 
  private:
-  void find_points(const PixelView& view, const PointCache& cache, int threads);
-  void rasterize(const PixelView& view, const FrameEdges& edges, int threads);
+  void find_points(const PixelView& view, const PointCache& cache, const ParallelOptions& parallel);
+  void rasterize(const PixelView& view, const FrameEdges& edges, const ParallelOptions& parallel);
 
   EdgePointImage image_;
   DepthCells depth_;

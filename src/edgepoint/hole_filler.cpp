@@ -30,6 +30,11 @@ Rgb color_of(const Image& picture, int x, int y) {
 
 constexpr int kFirstCell = 8;  // pixels
 
+ParallelOptions with_grain(ParallelOptions parallel, std::size_t grain) {
+  parallel.grain = grain;
+  return parallel;
+}
+
 // Means over cells of the picture, of 8 × 8 pixels and of ever twice as many, made where they are asked for.
 class Grids {
  public:
@@ -108,19 +113,18 @@ void set_bit(BitPlane& plane, int x, int y, bool value) {
 
 // Usable are first such as no edge crosses: the others are mixtures.
 HolePlanes make_planes(const EdgePointImage& image, std::span<const std::uint32_t> holes,
-                       int threads) {
+                       const ParallelOptions& parallel) {
   HolePlanes planes{BitPlane(image.width_px, image.height_px),
                     BitPlane(image.width_px, image.height_px)};
   const auto& corners = image.corners.primary;
-  parallel_for(std::size_t(image.height_px), {.grain = 128, .threads = threads},
-               [&](std::size_t row) {
-                 // All corners of an empty pixel are of its primary region, and of no other pixel.
-                 const int y = int(row);
-                 for (int word = 0; word < planes.usable.words(); ++word) {
-                   planes.usable.row(y)[word] = corners[0].row(y)[word] & corners[1].row(y)[word] &
-                                                corners[2].row(y)[word] & corners[3].row(y)[word];
-                 }
-               });
+  parallel_for(std::size_t(image.height_px), with_grain(parallel, 128), [&](std::size_t row) {
+    // All corners of an empty pixel are of its primary region, and of no other pixel.
+    const int y = int(row);
+    for (int word = 0; word < planes.usable.words(); ++word) {
+      planes.usable.row(y)[word] = corners[0].row(y)[word] & corners[1].row(y)[word] &
+                                   corners[2].row(y)[word] & corners[3].row(y)[word];
+    }
+  });
   for (const std::uint32_t hole : holes) {
     const int x = int(hole % std::uint32_t(image.width_px));
     const int y = int(hole / std::uint32_t(image.width_px));
@@ -137,16 +141,16 @@ struct FilledHole {
 
 // All that have a colour and belong to a region: the narrow one between an outline and a shadow has pixels alone that
 // edges cross.
-void use_mixtures(const EdgePointImage& image, HolePlanes& planes, int threads) {
-  parallel_for(
-      std::size_t(image.height_px), {.grain = 128, .threads = threads}, [&](std::size_t row) {
-        const int y = int(row);
-        for (int word = 0; word < planes.usable.words(); ++word) {
-          const std::uint64_t in_region =
-              image.corners.primary[0].row(y)[word] | image.corners.secondary[0].row(y)[word];
-          planes.usable.row(y)[word] = in_region & ~planes.holes.row(y)[word];
-        }
-      });
+void use_mixtures(const EdgePointImage& image, HolePlanes& planes,
+                  const ParallelOptions& parallel) {
+  parallel_for(std::size_t(image.height_px), with_grain(parallel, 128), [&](std::size_t row) {
+    const int y = int(row);
+    for (int word = 0; word < planes.usable.words(); ++word) {
+      const std::uint64_t in_region =
+          image.corners.primary[0].row(y)[word] | image.corners.secondary[0].row(y)[word];
+      planes.usable.row(y)[word] = in_region & ~planes.holes.row(y)[word];
+    }
+  });
 }
 
 // Pixels of a word that edges cross, and those beside them.
@@ -223,14 +227,15 @@ HoleFiller::HoleFiller(int width_px, int height_px)
       filled_(filled_stride_ * std::size_t(height_px)) {}
 
 // Step by step. Leaves those holes that nothing reaches.
-void HoleFiller::spread_reached(const EdgePointImage& image, int threads, HolePlanes& planes) {
+void HoleFiller::spread_reached(const EdgePointImage& image, const ParallelOptions& parallel,
+                                HolePlanes& planes) {
   constexpr int kSteps = 8;  // of up to two pixels each
   const auto height = std::size_t(image.height_px);
   const int words = planes.holes.words();
   std::vector<std::uint8_t> changes(height + 2 * kRowMargin, 1);
   for (int step = 0; step < kSteps; ++step) {
     std::vector<std::uint8_t> changed(changes.size(), 0);
-    parallel_for(height, {.grain = 8, .threads = threads}, [&](std::size_t y) {
+    parallel_for(height, with_grain(parallel, 8), [&](std::size_t y) {
       // Rows from y − kRowMargin on.
       const std::uint8_t* const around = changes.data() + y;
       if (std::all_of(around, around + 2 * kRowMargin + 1, [](auto c) { return c == 0; })) return;
@@ -238,7 +243,7 @@ void HoleFiller::spread_reached(const EdgePointImage& image, int threads, HolePl
       changed[y + kRowMargin] = fill_reached_row(image, planes, int(y), colors_, filled) ? 1 : 0;
     });
     if (std::ranges::all_of(changed, [](auto c) { return c == 0; })) return;
-    parallel_for(height, {.grain = 64, .threads = threads}, [&](std::size_t y) {
+    parallel_for(height, with_grain(parallel, 64), [&](std::size_t y) {
       if (changed[y + kRowMargin] == 0) return;
       for (int word = 0; word < words; ++word) {
         const std::uint64_t filled = filled_[y * filled_stride_ + std::size_t(word)];
@@ -251,19 +256,19 @@ void HoleFiller::spread_reached(const EdgePointImage& image, int threads, HolePl
 }
 
 void HoleFiller::fill(const EdgePointImage& image, std::span<const std::uint32_t> holes,
-                      int threads, Image& picture) {
+                      const ParallelOptions& parallel, Image& picture) {
   if (holes.empty()) return;
-  HolePlanes planes = make_planes(image, holes, threads);
+  HolePlanes planes = make_planes(image, holes, parallel);
   const BitPlane before = planes.holes;
   const auto height = std::size_t(image.height_px), width = std::size_t(image.width_px);
-  const ParallelOptions rows{.grain = 32, .threads = threads};
+  const ParallelOptions rows = with_grain(parallel, 32);
   parallel_for(height, rows, [&](std::size_t y) {
     part_row(picture.values.data() + 3 * width * y, image.width_px, colors_.row(int(y)));
   });
-  spread_reached(image, threads, planes);
+  spread_reached(image, parallel, planes);
   const BitPlane not_of_region = planes.holes;
-  use_mixtures(image, planes, threads);
-  spread_reached(image, threads, planes);
+  use_mixtures(image, planes, parallel);
+  spread_reached(image, parallel, planes);
   const auto for_filled = [&](int y, const auto& call) {
     for (int word = 0; word < before.words(); ++word) {
       const std::uint64_t filled = before.row(y)[word] & ~planes.holes.row(y)[word];

@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "arris/image.h"
+#include "base/parallel_for.h"
 #include "edgepoint/color_rows.h"
 #include "edgepoint/edge_point_image.h"
 #include "edgepoint/interpolate.h"
@@ -26,11 +27,12 @@ class HoleFiller {
   HoleFiller(int width_px, int height_px);
 
   // Sizes must be the filler's. holes: offsets of pixels, each once.
-  void fill(const EdgePointImage& image, std::span<const std::uint32_t> holes, int threads,
-            Image& picture);
+  void fill(const EdgePointImage& image, std::span<const std::uint32_t> holes,
+            const ParallelOptions& parallel, Image& picture);
 
  private:
-  void spread_reached(const EdgePointImage& image, int threads, HolePlanes& planes);
+  void spread_reached(const EdgePointImage& image, const ParallelOptions& parallel,
+                      HolePlanes& planes);
 
   std::size_t filled_stride_;
   ColorRows colors_;

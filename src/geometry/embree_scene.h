@@ -70,6 +70,7 @@ struct EmbreeSceneOptions {
   // Baking shared meshes may add this many triangles; the biggest savings are instanced beyond.
   std::uint64_t max_copied_triangles = 2'000'000;
   Placement placement = Placement::baked;
+  const std::atomic<bool>* stop = nullptr;  // PrepareOptions::stop, for what is built besides
 };
 
 class EmbreeScene {

@@ -245,7 +245,9 @@ class BeamRenderer final : public Renderer {
     if (!tiles.complete) result.samples.last = result.samples.first;
     sum_counts(tiles.counts, result);
     const std::uint32_t samples = result.samples.last - result.samples.first;
-    result.sum = std::make_shared<const PictureSum>(sum_of_mean(layers.picture, samples));
+    // Of what was stopped there is none to add up.
+    result.sum = std::make_shared<const PictureSum>(
+        sum_of_mean(samples > 0 ? layers.picture : Picture(), samples));
     if (samples > 0) result.picture = std::move(layers.picture);
     result.seconds = seconds_since(start);
     return result;

@@ -18,11 +18,12 @@ constexpr double kBeside = 100;
 
 }  // namespace
 
-CsgEdges::CsgEdges(std::shared_ptr<const CsgCells> cells, int threads)
+CsgEdges::CsgEdges(std::shared_ptr<const CsgCells> cells, int threads,
+                   const std::atomic<bool>* stop)
     : probe_(std::make_shared<const CellProbe>(std::move(cells))),
       patches_(std::make_shared<const SmoothPatches>(probe_->solid())),
       outline_(probe_, patches_),
-      creases_(find_creases(*probe_, *patches_, threads)) {}
+      creases_(find_creases(*probe_, *patches_, threads, stop)) {}
 
 CsgEdges::Found CsgEdges::find(Vec3d eye, int threads) const {
   Found found;

@@ -15,7 +15,8 @@ namespace arris {
 
 class CsgEdges {
  public:
-  CsgEdges(std::shared_ptr<const CsgCells> cells, int threads);
+  CsgEdges(std::shared_ptr<const CsgCells> cells, int threads,
+           const std::atomic<bool>* stop = nullptr);
 
   struct Segment {
     Vec3d a, b;

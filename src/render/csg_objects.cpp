@@ -159,7 +159,7 @@ BoxGeometry make_boxes(const Scene& scene, const CsgObject& object) {
 
 }  // namespace
 
-CsgObjects make_csg_objects(const Scene& scene, int threads) {
+CsgObjects make_csg_objects(const Scene& scene, int threads, const std::atomic<bool>* stop) {
   CsgObjects out;
   std::vector<std::shared_ptr<const CsgCells>> cells(scene.csg_trees.size());
   for (std::uint32_t i = 0; i < scene.objects.size(); ++i) {
@@ -169,7 +169,7 @@ CsgObjects make_csg_objects(const Scene& scene, int threads) {
     if (!shared) {
       shared = std::make_shared<const CsgCells>(
           std::make_shared<const CsgSolid>(scene.csg_trees[object.csg->index]),
-          "object \"" + object.name + "\"", CellOptions{.threads = threads});
+          "object \"" + object.name + "\"", CellOptions{.threads = threads, .stop = stop});
       out.bytes += shared->bytes();
     }
     out.objects.push_back(place_csg(shared, scene, ObjectId{i}));

@@ -12,6 +12,7 @@
 // Cost       as Embree's for the boxes, and about two leaves for each box met
 #pragma once
 
+#include <atomic>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -37,8 +38,9 @@ struct CsgObjects {
   std::uint64_t bytes = 0;
 };
 
-// Errors: Error{input} naming the object, for endless solids.
-CsgObjects make_csg_objects(const Scene& scene, int threads);
+// Errors: Error{input} naming the object, for endless solids; Error{failed} once `stop` is set.
+CsgObjects make_csg_objects(const Scene& scene, int threads,
+                            const std::atomic<bool>* stop = nullptr);
 // The same with objects in other places: those that have not moved are shared.
 CsgObjects move_csg_objects(const CsgObjects& before, const Scene& scene_before,
                             const Scene& moved);

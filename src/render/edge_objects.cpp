@@ -143,7 +143,8 @@ struct EdgeObjects::MeshEdges {
   }
 };
 
-EdgeObjects::EdgeObjects(const PreparedScene& prepared, int threads, Creases creases)
+EdgeObjects::EdgeObjects(const PreparedScene& prepared, int threads, Creases creases,
+                         const std::atomic<bool>* stop)
     : creases_(creases) {
   const Scene& scene = prepared.scene();
   objects_.resize(scene.objects.size());
@@ -157,7 +158,7 @@ EdgeObjects::EdgeObjects(const PreparedScene& prepared, int threads, Creases cre
   }
   std::vector<std::pair<std::pair<std::uint32_t, bool>, std::vector<std::uint32_t>>> tasks(
       users.begin(), users.end());
-  parallel_for(tasks.size(), {.grain = 1, .threads = threads}, [&](std::size_t t) {
+  parallel_for(tasks.size(), {.grain = 1, .threads = threads, .stop = stop}, [&](std::size_t t) {
     const Mesh& mesh = scene.meshes[tasks[t].first.first];
     const WeldedMesh welded = make_welded_mesh({mesh.positions, mesh.triangles}, mesh.name);
     const Seams seams(mesh, tasks[t].first.second);
@@ -172,7 +173,7 @@ EdgeObjects::EdgeObjects(const PreparedScene& prepared, int threads, Creases cre
       set_rounded(prepared, objects_[i]);
     }
   });
-  find_solids(prepared, threads);
+  find_solids(prepared, threads, stop);
   make_tasks();
 }
 
@@ -190,11 +191,12 @@ void EdgeObjects::make_tasks() {
 }
 
 // Objects that are made of one tree share its edges.
-void EdgeObjects::find_solids(const PreparedScene& prepared, int threads) {
+void EdgeObjects::find_solids(const PreparedScene& prepared, int threads,
+                              const std::atomic<bool>* stop) {
   std::map<const CsgCells*, std::shared_ptr<const CsgEdges>> found;
   for (const std::shared_ptr<CsgObject>& object : prepared.geometry().csg.objects) {
     std::shared_ptr<const CsgEdges>& edges = found[object->cells.get()];
-    if (!edges) edges = std::make_shared<const CsgEdges>(object->cells, threads);
+    if (!edges) edges = std::make_shared<const CsgEdges>(object->cells, threads, stop);
     objects_[object->object.index].solid = edges;
   }
 }

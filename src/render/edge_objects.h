@@ -60,7 +60,8 @@ enum class Creases : std::uint8_t { drawn, left_out };
 
 class EdgeObjects {
  public:
-  EdgeObjects(const PreparedScene& prepared, int threads, Creases creases = Creases::drawn);
+  EdgeObjects(const PreparedScene& prepared, int threads, Creases creases = Creases::drawn,
+              const std::atomic<bool>* stop = nullptr);
   ~EdgeObjects();
 
   // All edges of the picture, and few beside it. The scene is the one this was made of, or one whose objects, camera
@@ -116,7 +117,7 @@ class EdgeObjects {
     bool rounded_outline = false;
   };
 
-  void find_solids(const PreparedScene& prepared, int threads);
+  void find_solids(const PreparedScene& prepared, int threads, const std::atomic<bool>* stop);
   void make_tasks();
   static void set_rounded(const PreparedScene& prepared, ObjectEdges& object);
   static std::vector<RoundedEdge> find_rounded(const PreparedScene& prepared,

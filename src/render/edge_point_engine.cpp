@@ -85,7 +85,7 @@ class EdgePointEngine::Impl {
  public:
   Impl(std::shared_ptr<const PreparedScene> scene, const EdgePointSettings& settings)
       : settings_(checked(settings)),
-        shown_(first_shown(std::move(scene), settings.threads)),
+        shown_(first_shown(std::move(scene), settings)),
         shader_(make_point_shader(settings)),
         image_(shown_.scene->scene().image),
         camera_(*shown_.scene->scene().camera),
@@ -185,8 +185,10 @@ class EdgePointEngine::Impl {
     return is_still() && (wanted < kUrgent || still_frames_ > kUrgentFrames);
   }
 
-  static ShownScene first_shown(std::shared_ptr<const PreparedScene> scene, int threads) {
-    auto objects = std::make_shared<const EdgeObjects>(*scene, threads);
+  static ShownScene first_shown(std::shared_ptr<const PreparedScene> scene,
+                                const EdgePointSettings& settings) {
+    auto objects = std::make_shared<const EdgeObjects>(*scene, settings.threads, Creases::drawn,
+                                                       settings.stop);
     return {std::move(scene), std::move(objects), std::make_shared<const std::vector<SoftEdge>>()};
   }
   void show(ShownScene next);
@@ -214,7 +216,8 @@ class EdgePointEngine::Impl {
                         .threads = settings_.threads,
                         .find_tints = {},
                         .edges_are_missing = !settings_.use_edges,
-                        .points_may_be_stale = frame_ - changed_ < kFramesOfStale};
+                        .points_may_be_stale = frame_ - changed_ < kFramesOfStale,
+                        .stop = settings_.stop};
     if (settings_.sharp_textures) {
       frame.find_tints = [&](const EdgePointImage& image) {
         return tints_.update(*shown_.scene, camera, cache_, image, settings_.threads);
@@ -240,6 +243,9 @@ class EdgePointEngine::Impl {
   [[nodiscard]] bool must_end(bool has_picture) const {
     return !workers_ && settings_.must_end && settings_.must_end(has_picture);
   }
+  [[nodiscard]] ParallelOptions parallel() const {
+    return {.grain = 1, .threads = settings_.threads, .stop = settings_.stop};
+  }
   static void throw_stopped() {
     throw Error(Error::Kind::failed, "", "stopped before the first sample");
   }
@@ -253,7 +259,7 @@ class EdgePointEngine::Impl {
     std::vector<Rgb> sums(film_size());
     const bool has_picture = film_.least_paths() > 0;
     std::atomic<bool> ended = false;
-    parallel_for(rays.size(), {.grain = 1, .threads = settings_.threads}, [&](std::size_t y) {
+    parallel_for(rays.size(), parallel(), [&](std::size_t y) {
       if (!ended && must_end(has_picture)) ended = true;
       if (ended) return;
       for (int x = 0; x < image_.width_px; ++x) {
@@ -338,7 +344,7 @@ class EdgePointEngine::Impl {
     const Clock::time_point start = Clock::now();
     std::vector<ShadeResults> parts((plan.items.size() + ShadePlan::kStep - 1) / ShadePlan::kStep);
     std::atomic<bool> ended = false;
-    parallel_for(parts.size(), {.grain = 1, .threads = settings_.threads}, [&](std::size_t part) {
+    parallel_for(parts.size(), parallel(), [&](std::size_t part) {
       if (!ended && must_end(has_picture)) ended = true;
       if (ended) return;
       const std::size_t first = part * ShadePlan::kStep;

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "arris/error.h"
+#include "base/parallel_for.h"
 #include "render/bevel_shader.h"
 #include "render/camera.h"
 #include "render/meshed_bevels.h"
@@ -17,12 +18,6 @@
 
 namespace arris {
 namespace {
-
-void end_if_stopped(const PrepareOptions& options) {
-  if (options.stop != nullptr && *options.stop) {
-    throw Error(Error::Kind::failed, "", "stopped before the first sample");
-  }
-}
 
 void note_vanished_triangles(Scene& scene) {
   std::uint64_t triangles = 0, drawn = 0;
@@ -141,8 +136,8 @@ void add_csg_notes(const Scene& scene, const std::optional<RoundingSettings>& sc
 SceneRounding round_scene(const SceneGeometry& geometry,
                           const std::optional<RoundingSettings>& scene_default,
                           const PrepareOptions& options, const SceneRounding* before = nullptr) {
-  SceneRounding rounding =
-      make_scene_rounding(geometry, scene_default, {options.threads, options.detection}, before);
+  SceneRounding rounding = make_scene_rounding(
+      geometry, scene_default, {options.threads, options.detection, options.stop}, before);
   rounding.shaders = make_bevel_shaders(geometry, scene_default, before);
   add_csg_notes(geometry.scene, scene_default, rounding.summaries);
   return rounding;
@@ -206,19 +201,20 @@ std::shared_ptr<const PreparedScene> prepare_scene(Scene scene, const PrepareOpt
   check_scene(scene, "");
   note_vanished_triangles(scene);
   fill_in(scene);
-  end_if_stopped(options);
+  end_if_stopped(options.stop);
   MeshedBevels meshed = mesh_bevels(scene, scene.rounding, options.threads);
-  end_if_stopped(options);
+  end_if_stopped(options.stop);
   auto geometry = std::make_shared<SceneGeometry>(
       std::move(scene),
-      EmbreeSceneOptions{.threads = options.threads, .placement = options.placement});
+      EmbreeSceneOptions{
+          .threads = options.threads, .placement = options.placement, .stop = options.stop});
   geometry->build_seconds =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count() -
       meshed.seconds;
   geometry->meshed = std::move(meshed);
-  end_if_stopped(options);
+  end_if_stopped(options.stop);
   SceneRounding rounding = round_scene(*geometry, geometry->scene.rounding, options);
-  end_if_stopped(options);
+  end_if_stopped(options.stop);
   return std::make_shared<const PreparedScene>(std::move(geometry), std::move(rounding));
 }
 

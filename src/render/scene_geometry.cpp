@@ -89,7 +89,7 @@ SceneBounds light_bounds(const std::vector<Bounds>& objects) {
 }  // namespace
 
 PlacedGeometry::PlacedGeometry(const Scene& scene, const EmbreeSceneOptions& options)
-    : csg(make_csg_objects(scene, options.threads)),
+    : csg(make_csg_objects(scene, options.threads, options.stop)),
       embree(scene, options, make_csg_boxes(scene, csg)) {
   set_csg_records(csg, embree);
   for (const Object& object : scene.objects) bounds.push_back(world_bounds(scene, object));

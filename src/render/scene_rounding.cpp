@@ -60,10 +60,12 @@ class Maker {
     out_.geometries.resize(geometry_.embree.records().size());
     out_.sources.resize(out_.geometries.size());
     collect_tasks();
-    parallel_for(tasks_.size(), {.grain = 1, .threads = options_.threads}, [&](std::size_t i) {
-      if (!tasks_[i].result) build(tasks_[i]);
-    });
+    parallel_for(tasks_.size(), {.grain = 1, .threads = options_.threads, .stop = options_.stop},
+                 [&](std::size_t i) {
+                   if (!tasks_[i].result) build(tasks_[i]);
+                 });
     for (Task& task : tasks_) attach(task);
+    end_if_stopped(options_.stop);
     if (out_.any) find_void_neighbors(geometry_, out_, options_.threads, before_);
     out_.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     return std::move(out_);
@@ -104,14 +106,15 @@ class Maker {
 
   void collect_tasks() {
     std::vector<double> radii(out_.sources.size(), 0);
-    parallel_for(radii.size(), {.grain = 8, .threads = options_.threads}, [&](std::size_t i) {
-      const auto index = std::uint32_t(i);
-      out_.sources[i].place = object_of(index).world_from_object;
-      if (record(index).triangles == nullptr) return;
-      RoundingSource& source = out_.sources[i];
-      source.scale = instance_scale(record(index), source.place.linear);
-      source.radius = radii[i] = radius_of(index);
-    });
+    parallel_for(radii.size(), {.grain = 8, .threads = options_.threads, .stop = options_.stop},
+                 [&](std::size_t i) {
+                   const auto index = std::uint32_t(i);
+                   out_.sources[i].place = object_of(index).world_from_object;
+                   if (record(index).triangles == nullptr) return;
+                   RoundingSource& source = out_.sources[i];
+                   source.scale = instance_scale(record(index), source.place.linear);
+                   source.radius = radii[i] = radius_of(index);
+                 });
     std::map<std::tuple<std::uint32_t, double, int, double>, std::size_t> shared;
     for (std::uint32_t i = 0; i < radii.size(); ++i) {
       if (!(radii[i] > 0)) continue;

@@ -101,6 +101,7 @@ struct SceneRounding {
 struct SceneRoundingOptions {
   int threads = 0;
   Detection detection = Detection::face_index;
+  const std::atomic<bool>* stop = nullptr;  // PrepareOptions::stop
 };
 
 // With `before`, of the same objects in other places: what does not change is shared, and automatic radii stay.

@@ -23,7 +23,8 @@ void check_index(std::string_view kind, std::size_t index, std::size_t count) {
 }  // namespace
 
 std::shared_ptr<const PreparedScene> apply_changes(const PreparedScene& prepared,
-                                                   const SceneChanges& changes, int threads) {
+                                                   const SceneChanges& changes, int threads,
+                                                   const std::atomic<bool>* stop) {
   Scene scene = scene_of(prepared);
   for (const auto& [index, world_from_object] : changes.objects) {
     check_index("object", index, scene.objects.size());
@@ -33,7 +34,7 @@ std::shared_ptr<const PreparedScene> apply_changes(const PreparedScene& prepared
     check_index("light", index, scene.lights.size());
     scene.lights[index] = light;
   }
-  const PrepareOptions options{.threads = threads, .placement = Placement::movable};
+  const PrepareOptions options{.threads = threads, .stop = stop, .placement = Placement::movable};
   std::shared_ptr<const PreparedScene> out;
   if (!changes.objects.empty() || !changes.lights.empty()) {
     out = prepare_moved(prepared, std::move(scene), options);
@@ -121,7 +122,7 @@ void SceneUpdater::free_retired() {
 }
 
 void SceneUpdater::prepare(ShownScene& shown, const SceneChanges& changes) const {
-  ScenePtr after = apply_changes(*shown.scene, changes, settings_.threads);
+  ScenePtr after = apply_changes(*shown.scene, changes, settings_.threads, &stopped_);
   if (auto objects = shown.objects->with_roundings(*shown.scene, *after)) {
     shown.objects = std::move(objects);
   }

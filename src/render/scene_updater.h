@@ -9,6 +9,7 @@
 //            beyond comes with the next.
 #pragma once
 
+#include <atomic>
 #include <condition_variable>
 #include <cstdint>
 #include <exception>
@@ -37,7 +38,8 @@ struct SceneChanges {
 // Throws Error{input} for an object or light that the scene lacks, and what prepare_moved() and prepare_again()
 // throw.
 std::shared_ptr<const PreparedScene> apply_changes(const PreparedScene& prepared,
-                                                   const SceneChanges& changes, int threads);
+                                                   const SceneChanges& changes, int threads,
+                                                   const std::atomic<bool>* stop = nullptr);
 
 // What a frame shows, besides points.
 struct ShownScene {
@@ -98,9 +100,10 @@ class SceneUpdater {
   std::vector<ShadowTriple> asked_triples_;
   std::exception_ptr error_;
   std::vector<ScenePtr> garbage_;
-  bool complete_ = true;                    // no shadow edges are left to be found
-  bool dropped_ = false, stopped_ = false;  // dropped: nobody wants what is being prepared
-  std::thread thread_;                      // UpdateMode::beside
+  bool complete_ = true;               // no shadow edges are left to be found
+  bool dropped_ = false;               // nobody wants what is being prepared
+  std::atomic<bool> stopped_ = false;  // changes under the mutex
+  std::thread thread_;                 // UpdateMode::beside
 };
 
 }  // namespace arris

@@ -558,7 +558,7 @@ TEST(HoleFiller, colours_cross_no_edge) {
       picture.at(x, y, 2) = 7;  // what no hole keeps
     }
   }
-  HoleFiller(kWidth, kHeight).fill(image, holes, 0, picture);
+  HoleFiller(kWidth, kHeight).fill(image, holes, {}, picture);
   for (int y = 0; y < kHeight; ++y) {
     for (int x = 30; x <= 52; ++x) {
       EXPECT_EQ(picture.at(x, y, 2), 0);
@@ -594,7 +594,7 @@ TEST(HoleFiller, narrow_gaps_between_two_edges_stay_whole) {
       holes.push_back(std::uint32_t(image.offset(40, y)));
     }
   }
-  HoleFiller(kWidth, kHeight).fill(image, holes, 0, picture);
+  HoleFiller(kWidth, kHeight).fill(image, holes, {}, picture);
   for (int y = kKnown; y < kKnown + 12; ++y) {
     EXPECT_NEAR(picture.at(40, y, 0), 0.2F, 1e-3F) << y;
     EXPECT_NEAR(picture.at(40, y, 1), 0.8F, 1e-3F) << y;

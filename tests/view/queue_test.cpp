@@ -69,9 +69,24 @@ TEST(ClientQueue, holds_few_texts_however_many_come) {
     ++texts;
     states += last.starts_with("state") ? 1 : 0;
   }
-  EXPECT_LE(texts, 32);
+  EXPECT_LE(texts, 32 + 1);
   EXPECT_EQ(states, 1);
   EXPECT_EQ(last, "error 999");
+}
+
+TEST(ClientQueue, never_loses_how_things_are) {
+  ClientQueue queue(1);
+  const std::vector<std::string> kinds{"scene", "camera", "busy", "beam", "state"};
+  for (const char* age : {"old ", "new "}) {
+    for (const std::string& kind : kinds) queue.put(ViewText{kind, age + kind, {}, {}});
+  }
+  for (int i = 0; i < 1000; ++i) queue.put(ViewText{"error", "error", {}, {}});
+  std::vector<std::string> texts;
+  while (auto text = queue.take(Kinds::texts, Clock::now())) {
+    texts.push_back(std::get<std::string>(*text));
+  }
+  ASSERT_GE(texts.size(), kinds.size());
+  for (std::size_t i = 0; i < kinds.size(); ++i) EXPECT_EQ(texts[i], "new " + kinds[i]);
 }
 
 TEST(ClientQueue, takes_what_is_for_its_client) {

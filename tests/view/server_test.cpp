@@ -352,6 +352,53 @@ TEST_F(ViewServerTest, changes_of_the_scene_show_and_are_said) {
   EXPECT_EQ(scene["rounding"]["method"], "exact");
 }
 
+TEST_F(ViewServerTest, cameras_of_others_come_alone) {
+  start();
+  auto mover = look(), watcher = look();
+  // What the watcher hears of a move. Of the first ones it may be a scene, which has changed otherwise, too.
+  const auto move_to = [&](std::uint32_t seq) {
+    mover->send(camera(seq, seq));
+    for (;;) {
+      const auto message = watcher->read();
+      if (!message) throw std::runtime_error("closed");
+      if (message->is_binary) {
+        watcher->send({{"type", "ack"}, {"frame", WebSocket::parse(message->payload).number}});
+        continue;
+      }
+      json text = json::parse(message->payload);
+      const json& said = text["type"] == "scene" ? text["camera"] : text;
+      if (said.contains("position") && said["position"] == json({seq, -5, 3})) return text;
+    }
+  };
+  std::uint32_t seq = 1;
+  while (seq < 20 && move_to(seq)["type"] != "camera") ++seq;
+  const json text = move_to(++seq);
+  EXPECT_EQ(text["type"], "camera");
+  EXPECT_EQ(text["target"], json({1, 0, 0}));
+  EXPECT_EQ(text["up"], json({0, 0, 1}));
+  EXPECT_EQ(text["fov"], 35);
+  // The mover hears of it only in a scene that has changed otherwise.
+  read_until_seq(*mover, seq);
+  for (const json& heard : mover->texts()) EXPECT_NE(heard["type"], "camera");
+}
+
+TEST_F(ViewServerTest, scenes_say_what_of_a_client_is_in_them) {
+  start();
+  auto socket = look(), other = look();
+  EXPECT_EQ(socket->read_text("scene")["seq"], 0);
+  other->read_text("scene");
+  socket->send({{"type", "object"}, {"seq", 41}, {"id", 1}, {"visible", false}});
+  json scene;
+  do scene = socket->read_text("scene");
+  while (scene["objects"][1]["visible"].get<bool>());
+  EXPECT_EQ(scene["seq"], 41);
+  do scene = other->read_text("scene");
+  while (scene["objects"][1]["visible"].get<bool>());
+  EXPECT_EQ(scene["seq"], 0);
+  EXPECT_EQ(scene["lightings"], json({"studio", "sky", "white"}));
+  EXPECT_EQ(scene["objects"][0]["rounded"], 0.1);
+}
+
 TEST_F(ViewServerTest, a_change_that_cannot_be_made_is_an_error_and_changes_nothing) {
   start();
   auto socket = look();
@@ -445,6 +492,27 @@ TEST_F(ViewServerTest, makes_beam_pictures) {
     if (beam["ready"].get<bool>()) break;
   }
   EXPECT_EQ(test::fetch(port_, Request(with_token("/beam.png"))).status, 200);
+}
+
+TEST_F(ViewServerTest, stops_beam_pictures) {
+  start();
+  auto socket = look();
+  socket->send({{"type", "beam_stop"}, {"seq", 1}});
+  const json none = socket->read_text("beam");
+  EXPECT_EQ(none["stopped"], true);
+  EXPECT_EQ(none["ready"], false);
+  // Large enough not to be done at once.
+  socket->send({{"type", "size"}, {"seq", 2}, {"size", {3840, 2160}}});
+  read_until_seq(*socket, 2);
+  socket->send({{"type", "beam"}, {"seq", 3}});
+  EXPECT_EQ(socket->read_text("beam")["ready"], false);
+  socket->send({{"type", "beam_stop"}, {"seq", 4}});
+  for (;;) {
+    const json beam = socket->read_text("beam");
+    ASSERT_FALSE(beam["ready"].get<bool>());
+    if (beam.contains("stopped")) break;
+  }
+  EXPECT_EQ(test::fetch(port_, Request(with_token("/beam.png"))).status, 404);
 }
 
 TEST_F(ViewServerTest, takes_models_only_where_that_is_allowed) {

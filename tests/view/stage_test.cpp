@@ -139,6 +139,13 @@ TEST(ViewStage, what_was_changed_by_hand_outlives_a_change_of_the_file) {
   EXPECT_EQ(carry_over(first_edits(before), edits, first_edits(fewer)).objects.size(), 1U);
 }
 
+TEST(ViewStage, the_files_lighting_is_there_where_the_file_has_lights) {
+  ViewModel model = make_model(1);
+  EXPECT_EQ(lightings_of(model).size(), 3U);
+  model.scene.lights.emplace_back(PointLight{});
+  EXPECT_EQ(lightings_of(model).back(), LightChoice::file);
+}
+
 TEST(ViewStage, framed_views_show_all_from_where_they_are_asked_for) {
   const ViewModel model = make_model(1);
   const ViewEdits edits = first_edits(model);
