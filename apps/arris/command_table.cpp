@@ -174,7 +174,7 @@ CommandRow view_row() {
           "A-Z a-z 0-9 _ - (default: a new one each time)"},
          {"--no-browser", "", "only print the address"},
          {"--once", "", "end when the last page has been closed"},
-         {"--watch", "", "show the file anew when it changes"},
+         {"--watch", "", "show the model anew when one of its files changes"},
          {"--allow-upload", "", "pages may show models that are dropped on them"}}},
        {"Picture",
         {{"--size", "WxH", "of the first picture, in pixels (default: the page's)"},

@@ -1,11 +1,13 @@
 #include <fmt/format.h>
 #include <spawn.h>
+#include <sys/wait.h>
 
 #include <chrono>
 #include <cstdint>
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
+#include <memory>
 #include <string>
 #include <thread>
 #include <utility>
@@ -51,8 +53,7 @@ view::ServerSettings make_server_settings(const Arguments& arguments) {
     settings.token = *given;
   }
   settings.allow_upload = arguments.has("--allow-upload");
-  settings.watch = arguments.has("--watch");
-  settings.watched = arguments.positionals[0];
+  if (arguments.has("--watch")) settings.watch = std::make_shared<view::FileWatch>();
   if (settings.watch && arguments.positionals[0] == "-") {
     throw Error(Error::Kind::input, "--watch", "needs a file; stdin can't be read again");
   }
@@ -88,11 +89,21 @@ view::ViewModel make_model(Input loaded, const std::filesystem::path& file,
   return model;
 }
 
+// watch: null where nothing is watched.
+Input load_watched(const std::string& name, const LoadOptions& options, view::FileWatch* watch) {
+  if (watch == nullptr) return load_input(name, options);
+  view::FileWatch::Reading reading(*watch);
+  Input input = load_input(name, options);
+  reading.succeed();
+  return input;
+}
+
 view::ViewModel open_model(const std::filesystem::path& file, const std::string& name,
-                           bool is_foreign, const Arguments& arguments) {
+                           bool is_foreign, const Arguments& arguments, view::FileWatch* watch) {
   LoadOptions options = load_options_of(arguments);
   if (is_foreign) options.other_files = LoadOptions::OtherFiles::none;
-  view::ViewModel model = make_model(load_input(file.string(), options), file, arguments);
+  Input input = load_watched(file.string(), options, is_foreign ? nullptr : watch);
+  view::ViewModel model = make_model(std::move(input), file, arguments);
   model.name = name;
   return model;
 }
@@ -118,9 +129,12 @@ void open_browser(const std::string& address) {
     posix_spawn_file_actions_addopen(&actions, stream, "/dev/null", stream == 0 ? 0 : 1, 0);
   }
   pid_t child = 0;
-  posix_spawnp(&child, program.c_str(), &actions, &attributes, words, environ);
+  const bool is_started =
+      posix_spawnp(&child, program.c_str(), &actions, &attributes, words, environ) == 0;
   posix_spawnattr_destroy(&attributes);
   posix_spawn_file_actions_destroy(&actions);
+  // Some browsers stay as long as they are open.
+  if (is_started) std::thread([child] { ::waitpid(child, nullptr, 0); }).detach();
 }
 
 // What goes on beside the server stops soon, but for the reading of files, a structure that is being built and the
@@ -145,15 +159,16 @@ int run_view(const Arguments& arguments) {
   if (const auto given = find_given(arguments, "--trace-below")) {
     renderer_settings.trace_below_ms = parse_real(*given, {0, 1e9});
   }
-  renderer_settings.open = [&arguments](const std::filesystem::path& file, const std::string& name,
-                                        bool is_foreign) {
-    return open_model(file, name, is_foreign, arguments);
+  const std::shared_ptr<view::FileWatch> watch = server_settings.watch;
+  renderer_settings.open = [&arguments, watch](const std::filesystem::path& file,
+                                               const std::string& name, bool is_foreign) {
+    return open_model(file, name, is_foreign, arguments, watch.get());
   };
   with_rounding_options({}, arguments);  // checked before a long file is read
 
   Console console(arguments);
   view::ViewModel model =
-      make_model(load_input(input, load_options_of(arguments)),
+      make_model(load_watched(input, load_options_of(arguments), watch.get()),
                  input == "-" ? "" : std::filesystem::absolute(input), arguments);
   for (const std::string& note : model.scene.notes) console.report(note);
   view::ViewServer server(std::move(model), std::move(renderer_settings),

@@ -66,6 +66,8 @@ class ViewServer::Impl {
   ClientId add_client(std::weak_ptr<ClientSession> session);
   void remove_client(ClientId client);
   void update_ready();
+  // Of the files that are watched; empty: none.
+  [[nodiscard]] std::optional<ViewText> watch_problem() const;
 
   // Of too many the oldest is dropped.
   void add_stranger(Stranger& stranger);
@@ -84,6 +86,7 @@ class ViewServer::Impl {
   void accept();
   void wait_for_signal();
   void watch();
+  void send(const ViewText& text);
   void end_soon();
   void close_all();
 
@@ -101,7 +104,7 @@ class ViewServer::Impl {
   ClientId next_client_ = 1;
   std::uint64_t uploads_ = 0;
   std::optional<ScratchFolder> upload_folder_;
-  std::optional<std::filesystem::file_time_type> watched_time_, shown_time_;
+  std::string watch_problem_;
   std::unique_ptr<ViewRenderer> renderer_;  // last: its thread uses the context
 };
 

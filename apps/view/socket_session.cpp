@@ -64,6 +64,7 @@ class SocketSession : public ClientSession, public std::enable_shared_from_this<
     if (!server_.has_room_for_client()) return;
     client_ = server_.add_client(weak_from_this());
     queue_.emplace(client_);
+    if (const auto problem = server_.watch_problem()) put(*problem);
     read();
   }
 

@@ -1,4 +1,6 @@
 // What is shown follows what is asked for: at once, or by a view that is built beside.
+#include <malloc.h>
+
 #include <algorithm>
 #include <cmath>
 #include <exception>
@@ -220,7 +222,12 @@ void ViewRenderer::Loop::take_view(ShownView view) {
   picture_ = nullptr;
   shooter_.reset();
   asked_.clear();
+  const bool is_smaller = area_of(view.edits.size) < area_of(view_.edits.size);
   view_ = std::move(view);
+  if (!is_smaller) return;
+  composed_ = {};
+  // What the engines of a large picture have freed lies in pieces between what is left.
+  ::malloc_trim(0);
 }
 
 // Frames.

@@ -129,6 +129,7 @@ void ViewRenderer::Loop::step() {
   for (const auto& task : tasks) task();
   tasks.clear();
   take_inputs();
+  if (rest_at_ && Clock::now() >= *rest_at_) rest();
   finish_build();
   follow_edits();
   poll_beam();
@@ -157,6 +158,7 @@ void ViewRenderer::Loop::wait() {
     const Clock::time_point due = scene_sent_ + kSceneInterval;
     until = until ? std::min(*until, due) : due;
   }
+  if (rest_at_) until = until ? std::min(*until, *rest_at_) : *rest_at_;
   if (until) {
     wake_.wait_until(lock, *until, is_woken);
   } else {
@@ -260,6 +262,7 @@ void ViewRenderer::Loop::poll_beam() {
 
 void ViewRenderer::Loop::join(ClientId client) {
   clients_.push_back(client);
+  rest_at_.reset();
   settled_ = false;
   pace_.hurry(Clock::now());
   send("scene", with_seq(scene_message(view_, desired_, settings_.upload), 0), client);
@@ -268,6 +271,7 @@ void ViewRenderer::Loop::join(ClientId client) {
 
 void ViewRenderer::Loop::leave(ClientId client) {
   std::erase(clients_, client);
+  if (clients_.empty()) rest_at_ = Clock::now() + settings_.rest_after;
   const auto is_theirs = [&](const InputMark& mark) { return mark.client == client; };
   std::erase_if(shown_, is_theirs);
   std::erase_if(taken_, is_theirs);
@@ -276,6 +280,12 @@ void ViewRenderer::Loop::leave(ClientId client) {
   for (Asked& asked : asked_) std::erase_if(asked.marks, is_theirs);
   const std::lock_guard lock(mutex_);
   mailbox_.forget(client);
+}
+
+void ViewRenderer::Loop::rest() {
+  rest_at_.reset();
+  const PictureSize first = first_edits(*view_.model).size;
+  if (area_of(desired_.size) > area_of(first)) desired_.size = first;
 }
 
 void ViewRenderer::Loop::send(const char* type, std::string text, std::optional<ClientId> to,

@@ -80,6 +80,7 @@ class ViewRenderer::Loop {
   [[nodiscard]] bool wants_frame() const;
   [[nodiscard]] Clock::time_point frame_due(std::optional<Clock::time_point> send) const;
   [[nodiscard]] bool is_shader_idle();
+  void rest();
   void make_frame();
   void publish(bool moving, bool converged);
   void make_pictures();
@@ -134,6 +135,7 @@ class ViewRenderer::Loop {
   bool settled_ = false;  // nothing to be seen would change
   std::uint32_t frame_number_ = 0;
   std::vector<ClientId> clients_;
+  std::optional<Clock::time_point> rest_at_;  // set: nobody looks at a large picture
   bool scene_dirty_ = false, camera_dirty_ = false;
   std::optional<ClientId> camera_but_not_;  // who has set it; empty: several
   Clock::time_point scene_sent_, state_sent_;

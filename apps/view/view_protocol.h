@@ -24,6 +24,9 @@ struct PictureSize {
   int width_px = 1280, height_px = 720;
   friend bool operator==(const PictureSize&, const PictureSize&) = default;
 };
+inline std::int64_t area_of(PictureSize size) {
+  return std::int64_t(size.width_px) * size.height_px;
+}
 inline constexpr PictureSize kLeastSize{64, 64}, kMostSize{3840, 2160};
 
 // Whose lights: the file's, or those of render/staging.h.

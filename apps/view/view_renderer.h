@@ -53,7 +53,9 @@ struct ViewRendererSettings {
   int threads = 0;
   double trace_below_ms = 16;
   bool upload = false;  // only said to clients
-  OpenModel open;       // throws; called in another thread
+  // When nobody has looked for so long, pictures are as small again as the first one: large ones hold much memory.
+  std::chrono::milliseconds rest_after{30'000};
+  OpenModel open;  // throws; called in another thread
 };
 
 class ViewRenderer {

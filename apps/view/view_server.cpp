@@ -12,6 +12,7 @@
 #include "arris/error.h"
 #include "view/access.h"
 #include "view/server_impl.h"
+#include "view/view_report.h"
 
 namespace arris::view {
 namespace {
@@ -42,18 +43,11 @@ tcp::endpoint find_endpoint(const ServerSettings& settings, asio::io_context& co
   return found.begin()->endpoint();
 }
 
-std::optional<std::filesystem::file_time_type> time_of(const std::filesystem::path& file) {
-  std::error_code error;
-  const auto time = std::filesystem::last_write_time(file, error);
-  return error ? std::nullopt : std::optional(time);
-}
-
 }  // namespace
 
 ViewServer::Impl::Impl(ViewModel model, ViewRendererSettings renderer, ServerSettings settings)
     : settings_(std::move(settings)),
       token_(settings_.token.empty() ? make_token() : settings_.token) {
-  if (settings_.watch) shown_time_ = watched_time_ = time_of(settings_.watched);
   listen();
   renderer_ = std::make_unique<ViewRenderer>(std::move(model), std::move(renderer));
 }
@@ -111,13 +105,15 @@ void ViewServer::Impl::run() {
                       });
                     },
                     [this](ViewText text) {
-                      asio::post(context_, [this, text = std::move(text)] {
-                        for (const auto& [id, client] : clients_) {
-                          if (const auto session = client.lock()) session->put(text);
-                        }
-                      });
+                      asio::post(context_, [this, text = std::move(text)] { send(text); });
                     }});
   context_.run();
+}
+
+void ViewServer::Impl::send(const ViewText& text) {
+  for (const auto& [id, client] : clients_) {
+    if (const auto session = client.lock()) session->put(text);
+  }
 }
 
 void ViewServer::Impl::stop() {
@@ -209,17 +205,23 @@ void ViewServer::Impl::update_ready() {
   renderer_->set_next_send(first);
 }
 
-// Twice the same time, so that the file is not read while it is being written.
+std::optional<ViewText> ViewServer::Impl::watch_problem() const {
+  if (watch_problem_.empty()) return std::nullopt;
+  const std::string text =
+      watch_problem_ + ", the picture shows what was read before; put it back to go on";
+  return ViewText{"error", error_message({}, text), {}, {}};
+}
+
 void ViewServer::Impl::watch() {
   watch_timer_.expires_after(kWatchInterval);
   watch_timer_.async_wait([this](error_code error) {
     if (error) return;
-    const auto now = time_of(settings_.watched);
-    if (now && now == watched_time_ && now != shown_time_) {
-      shown_time_ = now;
-      renderer_->reload();
+    FileWatch::Look look = settings_.watch->look();
+    if (look.changed) renderer_->reload();
+    if (look.problem != watch_problem_) {
+      watch_problem_ = std::move(look.problem);
+      if (const auto text = watch_problem()) send(*text);
     }
-    watched_time_ = now;
     watch();
   });
 }

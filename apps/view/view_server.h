@@ -8,10 +8,10 @@
 
 #include <chrono>
 #include <cstdint>
-#include <filesystem>
 #include <memory>
 #include <string>
 
+#include "view/file_watch.h"
 #include "view/view_renderer.h"
 
 namespace arris::view {
@@ -25,8 +25,8 @@ struct ServerSettings {
   std::string token;  // is_good_token(); empty: a new one
   // A request's head, its body, and the connection of who has been answered may take so long.
   std::chrono::milliseconds header_time{5'000}, body_time{120'000};
-  bool watch = false;  // show the model's file again when it changes
-  std::filesystem::path watched;
+  std::shared_ptr<FileWatch>
+      watch;  // the model is shown again when its files change; null: it is not
 };
 
 class ViewServer {

@@ -13,6 +13,7 @@
 #include <utility>
 
 #include "arris/error.h"
+#include "io/file_reads.h"
 
 namespace arris {
 namespace {
@@ -92,6 +93,7 @@ void write_device(const fs::path& path, std::span<const std::uint8_t> bytes) {
 }  // namespace
 
 std::vector<std::uint8_t> read_file_bytes(const fs::path& path, std::uint64_t max_bytes) {
+  FileReads::tell(path);
   const auto fail = [&](const std::string& what) {
     throw Error(Error::Kind::input, path.string(), what);
   };

@@ -4,8 +4,10 @@
 #include <gtest/gtest.h>
 #include <spawn.h>
 #include <sys/wait.h>
+#include <unistd.h>
 
 #include <csignal>
+#include <cstdlib>
 #include <filesystem>
 #include <initializer_list>
 #include <memory>
@@ -25,9 +27,12 @@ using testing::StartsWith;
 
 class RunningView {
  public:
-  RunningView(const test::Workplace& place, std::vector<std::string> words) {
+  enum class Browser { none, opened };
+  RunningView(const test::Workplace& place, std::vector<std::string> words,
+              Browser browser = Browser::none) {
+    if (browser == Browser::none) words.emplace_back("--no-browser");
     words.insert(words.begin(), {ARRIS_BINARY_DIR "/arris", "view"});
-    for (const char* word : {"--no-browser", "--port", "0", "--threads", "1", "--size", "96x64"}) {
+    for (const char* word : {"--port", "0", "--threads", "1", "--size", "96x64"}) {
       words.emplace_back(word);
     }
     std::vector<char*> pointers;
@@ -61,6 +66,7 @@ class RunningView {
   [[nodiscard]] const std::string& address() const { return address_; }
   [[nodiscard]] std::uint16_t port() const { return std::uint16_t(std::stoi(address_.substr(17))); }
   [[nodiscard]] std::string token() const { return address_.substr(address_.find("t=") + 2); }
+  [[nodiscard]] pid_t process() const { return process_; }
   void signal(int number) const { ::kill(process_, number); }
   int wait() {
     int status = 0;
@@ -125,6 +131,101 @@ TEST(ViewProgram, what_it_saves_can_be_rendered_and_viewed) {
     const test::Outcome outcome = place.arris("render saved.toml -o saved.png --spp 1 --quiet");
     EXPECT_EQ(outcome.code, 0) << outcome.err << saved.body;
   }
+}
+
+TEST(ViewProgram, shows_a_scene_anew_when_a_file_that_it_names_has_changed) {
+  const test::Workplace place;
+  test::write_text(place / "scene.toml", "[[object]]\nfile = \"cube.stl\"\n");
+  RunningView view(place, {(place / "scene.toml").string(), "--watch"});
+  WebSocket socket(view.port(), view.token());
+  socket.send({{"type", "hello"}, {"size", {96, 64}}});
+  EXPECT_EQ(socket.read_text("scene")["bounds"]["upper"][0], 2);
+  test::write_text(place / "cube.stl", test::cube_stl(3));
+  while (socket.read_text("scene")["bounds"]["upper"][0] != 3) {
+  }
+}
+
+TEST(ViewProgram, says_that_a_file_was_deleted_and_goes_on_when_it_is_back) {
+  const test::Workplace place;
+  RunningView view(place, {(place / "cube.stl").string(), "--watch"});
+  WebSocket socket(view.port(), view.token());
+  socket.send({{"type", "hello"}, {"size", {96, 64}}});
+  socket.read_frame();
+  std::filesystem::remove(place / "cube.stl");
+  const auto error = socket.read_text("error");
+  EXPECT_THAT(error["text"].get<std::string>(), HasSubstr("cube.stl was deleted"));
+  EXPECT_THAT(error["remedy"].get<std::string>(), HasSubstr("put it back"));
+  WebSocket other(view.port(), view.token());  // who comes later hears of it, too
+  EXPECT_EQ(other.read_text("error"), error);
+  EXPECT_EQ(other.read_text("scene")["bounds"]["upper"][0], 2);
+  test::write_text(place / "cube.stl", test::cube_stl(3));
+  while (socket.read_text("scene")["bounds"]["upper"][0] != 3) {
+  }
+}
+
+void write_program(const std::filesystem::path& file, const std::string& text) {
+  test::write_text(file, "#!/bin/sh\n" + text);
+  std::filesystem::permissions(file, std::filesystem::perms::owner_all);
+}
+
+// Until a program has written it.
+std::string wait_for(const std::filesystem::path& file) {
+  std::string text;
+  while ((text = test::read_text(file)).empty()) ::usleep(10'000);
+  return text;
+}
+
+// What is first on the PATH, for the programs that are started meanwhile.
+class OnPath {
+ public:
+  explicit OnPath(const std::filesystem::path& folder) : before_(std::getenv("PATH")) {
+    ::setenv("PATH", (folder.string() + ":" + before_).c_str(), 1);
+  }
+  OnPath(const OnPath&) = delete;
+  OnPath& operator=(const OnPath&) = delete;
+  ~OnPath() { ::setenv("PATH", before_.c_str(), 1); }
+
+ private:
+  std::string before_;
+};
+
+TEST(ViewProgram, waits_for_nothing_that_cannot_be_stopped) {
+  const test::Workplace place;
+  const std::filesystem::path said = place / "said";
+  write_program(
+      place / "openscad",
+      fmt::format("echo $$ > '{0}.new'; mv '{0}.new' '{0}'; exec sleep 100\n", said.string()));
+  test::write_text(place / "model.csg", "cube(size = [1, 1, 1]);\n");
+  const OnPath path(place / ".");
+  RunningView view(place, {(place / "model.csg").string(), "--watch"});
+  WebSocket socket(view.port(), view.token());
+  socket.send({{"type", "hello"}, {"size", {96, 64}}});
+  socket.read_frame();
+  // Only openscad can make it.
+  test::write_text(
+      place / "model.csg",
+      "minkowski() { difference() { cube(size = [1, 1, 1]); cube(size = [0.5, 2, 2]); } "
+      "sphere(r = 0.1); }\n");
+  const pid_t openscad = std::stoi(wait_for(said));
+  view.signal(SIGTERM);
+  EXPECT_EQ(view.wait(), 0);
+  EXPECT_EQ(::kill(openscad, SIGKILL), 0) << "it is still at work";
+}
+
+TEST(ViewProgram, leaves_no_dead_browser) {
+  const test::Workplace place;
+  const std::filesystem::path said = place / "said";
+  write_program(place / "xdg-open",
+                fmt::format("echo $1 > '{0}.new'; mv '{0}.new' '{0}'\n", said.string()));
+  const OnPath path(place / ".");
+  ::setenv("DISPLAY", ":0", 1);
+  const RunningView view(place, {(place / "cube.stl").string()}, RunningView::Browser::opened);
+  ::unsetenv("DISPLAY");
+  EXPECT_THAT(wait_for(said), StartsWith(view.address()));
+  const std::string children = fmt::format("/proc/{0}/task/{0}/children", view.process());
+  int looks = 0;
+  while (!test::read_text(children).empty() && ++looks < 1000) ::usleep(10'000);
+  EXPECT_EQ(test::read_text(children), "");
 }
 
 TEST(ViewProgram, keeps_the_token_that_it_is_given) {

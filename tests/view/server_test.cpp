@@ -2,6 +2,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <atomic>
+#include <future>
 #include <memory>
 #include <string>
 #include <thread>
@@ -50,11 +52,16 @@ class ViewServerTest : public testing::Test {
   void start(ServerSettings settings = {}) {
     ViewRendererSettings renderer;
     renderer.threads = 1;
+    renderer.rest_after = rest_after_;
     renderer.upload = settings.allow_upload;
-    renderer.open = [](const std::filesystem::path& file, const std::string& name,
-                       bool is_foreign) {
+    renderer.open = [this](const std::filesystem::path& file, const std::string& name,
+                           bool is_foreign) {
       EXPECT_TRUE(is_foreign);
       if (name == "path.stl") throw Error(Error::Kind::input, file.string(), "is cut short");
+      if (name == "slow.stl") {
+        slow_began_ = true;
+        while (!slow_may_end_) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+      }
       if (name == "bad.stl") throw Error(Error::Kind::input, name, "holds nothing; draw something");
       ViewModel model = make_boxes();
       model.name = name;
@@ -105,6 +112,8 @@ class ViewServerTest : public testing::Test {
         {reinterpret_cast<const std::uint8_t*>(frame.jpeg.data()), frame.jpeg.size()}, "frame");
   }
 
+  std::atomic<bool> slow_began_ = false, slow_may_end_ = false;
+  std::chrono::milliseconds rest_after_{30'000};
   std::unique_ptr<ViewServer> server_;
   std::thread thread_;
   std::uint16_t port_ = 0;
@@ -482,6 +491,26 @@ TEST_F(ViewServerTest, says_why_there_is_no_scene_to_save) {
   EXPECT_THAT(scene.body, HasSubstr("all objects are hidden"));
 }
 
+TEST_F(ViewServerTest, pictures_that_nobody_looks_at_become_small_again) {
+  rest_after_ = std::chrono::milliseconds(100);
+  start();
+  {
+    auto socket = look();
+    socket->send({{"type", "size"}, {"seq", 1}, {"size", {400, 300}}});
+    EXPECT_EQ(read_until_seq(*socket, 1).width, 400);
+  }
+  const auto saved_width = [&] {
+    const std::string png = test::fetch(port_, Request(with_token("/picture.png"))).body;
+    return decode_png({reinterpret_cast<const std::uint8_t*>(png.data()), png.size()}, "png")
+        .width_px;
+  };
+  int looks = 0;
+  while (saved_width() != 160 && ++looks < 1000) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  }
+  EXPECT_EQ(saved_width(), 160);
+}
+
 TEST_F(ViewServerTest, makes_beam_pictures) {
   start();
   auto socket = look();
@@ -543,6 +572,31 @@ TEST_F(ViewServerTest, shows_models_that_are_dropped) {
     EXPECT_EQ(scene["objects"].size(), 1U);
     break;
   }
+}
+
+TEST_F(ViewServerTest, a_model_that_comes_while_another_is_prepared_takes_its_place) {
+  ServerSettings settings;
+  settings.allow_upload = true;
+  start(settings);
+  const auto post = [&](const char* name) {
+    return std::async(std::launch::async, [this, name] {
+      return test::fetch(port_,
+                         Request(with_token(std::string("/model?name=") + name)).post("solid"));
+    });
+  };
+  auto slow = post("slow.stl");
+  while (!slow_began_) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  auto next = post("next.stl");
+  // Until the renderer has heard of it: an answer to what came later comes later.
+  for (int i = 0; i < 20; ++i) {
+    EXPECT_EQ(test::fetch(port_, Request(with_token("/scene.toml"))).status, 200);
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  }
+  slow_may_end_ = true;
+  const test::Response replaced = slow.get();
+  EXPECT_EQ(replaced.status, 422);
+  EXPECT_THAT(replaced.body, HasSubstr("another model was opened meanwhile"));
+  EXPECT_EQ(next.get().status, 204);
 }
 
 // An empty variable in a script must not open the server to all.
