@@ -140,7 +140,7 @@ void open_browser(const std::string& address) {
 // What goes on beside the server stops soon, but for the reading of files, a structure that is being built and the
 // rounding of a single large mesh: the program waits for none of these. Nothing of them is to be kept.
 void end_soon() {
-  static constexpr auto kWait = std::chrono::milliseconds(600);
+  static constexpr auto kWait = std::chrono::milliseconds(400);
   std::thread([] {
     std::this_thread::sleep_for(kWait);
     std::_Exit(0);

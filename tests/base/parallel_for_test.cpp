@@ -7,6 +7,8 @@
 #include <thread>
 #include <vector>
 
+#include "arris/error.h"
+
 namespace arris {
 namespace {
 
@@ -26,6 +28,19 @@ TEST(ParallelFor, stays_in_the_callers_thread_if_asked_for_one) {
   parallel_for(1000, {.threads = 1},
                [&](std::size_t) { elsewhere += std::this_thread::get_id() != caller ? 1 : 0; });
   EXPECT_EQ(elsewhere, 0);
+}
+
+TEST(ParallelFor, ends_with_an_error_once_it_is_stopped) {
+  std::atomic<bool> stop = false;
+  std::atomic<int> calls = 0;
+  const auto loop = [&] {
+    parallel_for(100'000, {.threads = 1, .stop = &stop}, [&](std::size_t) {
+      ++calls;
+      stop = true;
+    });
+  };
+  EXPECT_THROW(loop(), Error);
+  EXPECT_EQ(calls, 1);
 }
 
 TEST(ParallelFor, hands_on_an_exception_of_the_body) {

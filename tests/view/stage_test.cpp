@@ -5,6 +5,7 @@
 #include "arris/error.h"
 #include "arris/render.h"
 #include "geometry/shapes.h"
+#include "view/shown_view.h"
 
 namespace arris::view {
 namespace {
@@ -174,6 +175,23 @@ TEST(ViewStage, the_ground_of_a_scene_is_where_it_says_until_it_is_turned_off) {
   apply_message(model, SetGround{false}, edits);
   EXPECT_EQ(stage_view(model, edits).scene.objects.size(), 1U);
   EXPECT_FALSE(stage_view(model, edits).scene.ground);
+}
+
+TEST(ShownView, ends_when_it_is_stopped) {
+  const auto model = std::make_shared<const ViewModel>(make_model(2));
+  ViewEdits edits = first_edits(*model);
+  edits.size = kLeastSize;
+  BuildSettings settings;
+  for (const double trace_below_ms : {0.0, 1e9}) {
+    settings.trace_below_ms = trace_below_ms;
+    settings.stop = std::make_shared<std::atomic<bool>>(false);
+    const ShownView view = build_view(model, edits, settings);
+    view.engine->next_frame();
+    *view.stop = true;
+    EXPECT_THROW(view.engine->next_frame(), Error);
+    EXPECT_THROW(build_view(model, edits, settings), Error);
+    EXPECT_THROW(build_view(model, edits, settings, usable_parts(view)), Error);
+  }
 }
 
 }  // namespace
