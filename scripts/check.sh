@@ -44,14 +44,14 @@ step_asan() {
 }
 
 # The modules that start threads; the rest of the tests would find nothing here. What must be done in a
-# given time is not: everything is ten times slower. Nor what only sends many rays at one thing.
+# given time is not: everything is ten times slower. Nor what only sends many rays at one thing, or makes many frames.
 step_tsan() {
-  local threaded='base|render'
+  local threaded='base|render|view'
   local many_rays='VoidNeighborsOf|Furnace|csg_edges|csg_shadows|rounded_scene|rounded_shadow|closed_form|\.trace\.'
   many_rays+='|converges_to_the_path|edges_halve_the_error|rounded_outlines|glass_agrees|agree_with_the_path'
   many_rays+='|agrees_with_the_path|mis\.strategies|tends_to_the_path|grooves_are_hollow'
   cmake --preset tsan
-  cmake --build --preset tsan --target test_base test_render
+  cmake --build --preset tsan --target test_base test_render test_view
   TSAN_OPTIONS="suppressions=$PWD/scripts/tsan.supp:halt_on_error=1:second_deadlock_stack=1" \
     ctest --preset tsan --parallel "$jobs" -R "^($threaded)\\." -E "time_limit|$many_rays" \
     --no-tests=error
