@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <atomic>
+#include <memory>
+
 #include "arris/error.h"
 #include "arris/render.h"
 #include "geometry/shapes.h"
