@@ -11,7 +11,7 @@ using std::chrono::milliseconds;
 constexpr auto kMoveLasts = milliseconds(150);
 // Of a moving view's time, at least this is the shader's.
 constexpr double kShaderShare = 0.2;
-constexpr auto kMovingInterval = milliseconds(30);
+constexpr auto kMovingInterval = milliseconds(25);
 // Of a view that stands still: a part of the time for which it has, within these.
 constexpr double kStillPart = 0.1;
 constexpr duration<double> kLeastStill{0.08}, kMostStill{0.5};

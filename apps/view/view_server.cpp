@@ -152,6 +152,9 @@ void ViewServer::Impl::accept() {
       timer->async_wait([this, timer](error_code) { accept(); });
       return;
     }
+    // A frame's last bytes would wait for an acknowledgement of those before, which comes 40 ms late.
+    error_code ignored;
+    socket.set_option(tcp::no_delay(true), ignored);
     start_http_session(*this, std::move(socket));
     accept();
   });

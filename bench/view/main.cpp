@@ -122,7 +122,7 @@ class Viewer {
 
 struct Run {
   double address_ms = 0, first_ms = 0;
-  std::vector<double> delays_ms, gaps_ms;
+  std::vector<double> delays_ms, gaps_ms, work_ms;
   double frames_a_second = 0, frame_kb = 0, resident_mb = 0;
   std::size_t triangles = 0;
 };
@@ -158,7 +158,11 @@ void move_camera(WebSocket& socket, const json& camera, const Arguments& argumen
     if (!socket.has_more(std::max(1, int(due_ms - ms_since(begin))))) continue;
     const auto message = socket.read();
     if (!message) throw std::runtime_error("the viewer has closed the connection");
-    if (!message->is_binary) continue;
+    if (!message->is_binary) {
+      const json text = json::parse(message->payload);
+      if (text["type"] == "state") run.work_ms.push_back(text["frame_ms"]);
+      continue;
+    }
     const Frame frame = WebSocket::parse(message->payload);
     socket.send({{"type", "ack"}, {"frame", frame.number}});
     const Clock::time_point now = Clock::now();
@@ -206,10 +210,10 @@ double part_of(std::vector<double> values, double part) {
 
 void print_run(const std::string& name, const Run& run) {
   fmt::print(
-      "{:24} {:9} | {:7.0f} {:7.0f} | {:5.1f} {:6.0f} {:6.0f} | {:6.0f} {:6.0f} | {:5.0f} "
+      "{:24} {:9} | {:7.0f} {:7.0f} | {:5.1f} {:6.0f} {:6.0f} {:6.0f} | {:6.0f} {:6.0f} | {:5.0f} "
       "{:6.0f}\n",
       name, run.triangles, run.address_ms, run.first_ms, run.frames_a_second,
-      arris::bench::median(run.gaps_ms), part_of(run.gaps_ms, 1),
+      arris::bench::median(run.gaps_ms), part_of(run.gaps_ms, 1), arris::bench::median(run.work_ms),
       arris::bench::median(run.delays_ms), part_of(run.delays_ms, 0.95), run.frame_kb,
       run.resident_mb);
   std::fflush(stdout);
@@ -226,9 +230,9 @@ int run_all(const Arguments& arguments) {
              arguments.width_px, arguments.height_px, arguments.shader, arguments.inputs_a_second,
              arguments.seconds);
   fmt::print(
-      "                                   | address   first |  a s    gap longest | delay    95% | "
-      "kB "
-      "each MB\n");
+      "                                   | address   first |   a s    gap longest   work |  delay    95% |    kB"
+      "     MB
+");
   for (const std::string& model : models) {
     for (int i = 0; i < arguments.runs; ++i) {
       print_run(std::filesystem::path(model).filename().string(), measure(arguments, model));

@@ -49,7 +49,16 @@ class Grids {
     }
   }
 
-  [[nodiscard]] std::size_t levels() const { return levels_.size(); }
+  // Of the smallest cell about a pixel in which anything is known; black where nothing is.
+  Rgb mean_around(int x, int y) {
+    for (std::size_t level = 0; level < levels_.size(); ++level) {
+      const Cell& cell = at(level, x / kFirstCell >> level, y / kFirstCell >> level);
+      if (cell.count > 0) return cell.sum * (1 / cell.count);
+    }
+    return {};
+  }
+
+ private:
   const Cell& at(std::size_t level, int x, int y) {
     Level& l = levels_[level];
     Cell& cell = l.cells[std::size_t(y) * std::size_t(l.width) + std::size_t(x)];
@@ -57,7 +66,6 @@ class Grids {
     return cell;
   }
 
- private:
   static constexpr float kUnknown = -1;
   struct Level {
     int width, height;
@@ -105,32 +113,28 @@ void set_color(Image& picture, std::uint32_t pixel, Rgb color) {
   out[2] = color.z;
 }
 
-void set_bit(BitPlane& plane, int x, int y, bool value) {
-  const std::uint64_t bit = std::uint64_t{1} << unsigned(x & 63);
-  std::uint64_t& word = plane.row(y)[x >> 6];
-  word = value ? word | bit : word & ~bit;
-}
-
 // Usable are first such as no edge crosses: the others are mixtures.
 HolePlanes make_planes(const EdgePointImage& image, std::span<const std::uint32_t> holes,
                        const ParallelOptions& parallel) {
   HolePlanes planes{BitPlane(image.width_px, image.height_px),
                     BitPlane(image.width_px, image.height_px)};
   const auto& corners = image.corners.primary;
-  parallel_for(std::size_t(image.height_px), with_grain(parallel, 128), [&](std::size_t row) {
-    // All corners of an empty pixel are of its primary region, and of no other pixel.
+  const auto width = std::uint32_t(image.width_px);
+  parallel_for(std::size_t(image.height_px), with_grain(parallel, 32), [&](std::size_t row) {
     const int y = int(row);
+    std::uint64_t* const of_holes = planes.holes.row(y);
+    const std::uint32_t first = std::uint32_t(row) * width;
+    auto hole = std::ranges::lower_bound(holes, first);
+    for (; hole != holes.end() && *hole < first + width; ++hole) {
+      of_holes[(*hole - first) / 64] |= std::uint64_t{1} << (*hole - first) % 64;
+    }
+    // All corners of an empty pixel are of its primary region, and of no other pixel.
     for (int word = 0; word < planes.usable.words(); ++word) {
       planes.usable.row(y)[word] = corners[0].row(y)[word] & corners[1].row(y)[word] &
-                                   corners[2].row(y)[word] & corners[3].row(y)[word];
+                                   corners[2].row(y)[word] & corners[3].row(y)[word] &
+                                   ~of_holes[word];
     }
   });
-  for (const std::uint32_t hole : holes) {
-    const int x = int(hole % std::uint32_t(image.width_px));
-    const int y = int(hole / std::uint32_t(image.width_px));
-    set_bit(planes.holes, x, y, true);
-    set_bit(planes.usable, x, y, false);
-  }
   return planes;
 }
 
@@ -294,19 +298,12 @@ void HoleFiller::fill(const EdgePointImage& image, std::span<const std::uint32_t
   }
   mixer.finish(picture);
   Grids grids(picture, planes.holes);
-  for (const std::uint32_t hole : holes) {
-    const int pixel_x = int(hole % std::uint32_t(picture.width_px));
-    const int pixel_y = int(hole / std::uint32_t(picture.width_px));
-    if (!planes.holes.at(pixel_x, pixel_y)) continue;
-    int x = pixel_x / kFirstCell, y = pixel_y / kFirstCell;
-    for (std::size_t level = 0; level < grids.levels(); ++level) {
-      const Cell& cell = grids.at(level, x, y);
-      if (cell.count > 0) {
-        set_color(picture, hole, cell.sum * (1 / cell.count));
-        break;
+  for (int y = 0; y < image.height_px; ++y) {
+    for (int word = 0; word < planes.holes.words(); ++word) {
+      for (std::uint64_t left = planes.holes.row(y)[word]; left != 0; left &= left - 1) {
+        const int x = 64 * word + std::countr_zero(left);
+        set_color(picture, std::uint32_t(image.offset(x, y)), grids.mean_around(x, y));
       }
-      x /= 2;
-      y /= 2;
     }
   }
 }

@@ -26,7 +26,7 @@ class HoleFiller {
  public:
   HoleFiller(int width_px, int height_px);
 
-  // Sizes must be the filler's. holes: offsets of pixels, each once.
+  // Sizes must be the filler's. holes: offsets of pixels, ascending.
   void fill(const EdgePointImage& image, std::span<const std::uint32_t> holes,
             const ParallelOptions& parallel, Image& picture);
 

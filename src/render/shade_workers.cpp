@@ -1,5 +1,7 @@
 #include "render/shade_workers.h"
 
+#include <sys/resource.h>
+
 #include <algorithm>
 #include <chrono>
 #include <utility>
@@ -7,6 +9,11 @@
 #include "base/flush_denormals.h"
 
 namespace arris {
+namespace {
+
+constexpr int kNiceness = 10;
+
+}  // namespace
 
 ShadeWorkers::ShadeWorkers(int threads) {
   const int count = threads > 0 ? threads : std::max(1, int(std::thread::hardware_concurrency()));
@@ -46,6 +53,9 @@ std::vector<ShadeWorkers::Batch> ShadeWorkers::collect() {
 
 void ShadeWorkers::run() {
   const FlushDenormals flush;
+  // A frame that is ready to be sent, and the browser that draws it, are more urgent than points. On Linux each thread
+  // has a niceness of its own; where that can't be set all goes on as it was.
+  ::setpriority(PRIO_PROCESS, 0, kNiceness);
   for (;;) {
     std::shared_ptr<const ShadePlan> plan;
     std::size_t first = 0;
