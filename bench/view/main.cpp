@@ -230,9 +230,7 @@ int run_all(const Arguments& arguments) {
              arguments.width_px, arguments.height_px, arguments.shader, arguments.inputs_a_second,
              arguments.seconds);
   fmt::print(
-      "                                   | address   first |   a s    gap longest   work |  delay    95% |    kB"
-      "     MB
-");
+      "{:34} | address   first |   a s    gap longest   work |  delay    95% |    kB     MB\n", "");
   for (const std::string& model : models) {
     for (int i = 0; i < arguments.runs; ++i) {
       print_run(std::filesystem::path(model).filename().string(), measure(arguments, model));
