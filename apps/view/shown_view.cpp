@@ -10,6 +10,9 @@
 namespace arris::view {
 namespace {
 
+// Points show a still view's light sooner than paths do; paths get it done.
+constexpr double kTraceStillMs = 1000;
+
 using ScenePtr = std::shared_ptr<const PreparedScene>;
 
 // Moves of a single object change nothing but where the light comes from; several are worth a structure of their own.
@@ -94,6 +97,8 @@ std::unique_ptr<EdgePointEngine> make_engine(const ViewModel& model, const Scene
   engine_settings.threads = settings.threads;
   engine_settings.trace_below_ms = settings.trace_below_ms;
   engine_settings.stop = settings.stop.get();
+  engine_settings.hurry = settings.hurry;
+  engine_settings.trace_still_ms = kTraceStillMs;
   auto engine = std::make_unique<EdgePointEngine>(scene, engine_settings);
   engine->set_camera(edits.camera);
   constexpr int kMostFrames = 8;

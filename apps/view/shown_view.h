@@ -31,7 +31,8 @@ struct ShownView {
 
 struct BuildSettings {
   int threads = 0;
-  double trace_below_ms = 16;  // EdgePointSettings::trace_below_ms
+  double trace_below_ms = 16;                // EdgePointSettings::trace_below_ms
+  const std::atomic<bool>* hurry = nullptr;  // EdgePointSettings::hurry
   StopFlag stop = std::make_shared<std::atomic<bool>>(false);
 };
 

@@ -2,6 +2,7 @@
 #include <malloc.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <exception>
 #include <string>
@@ -256,7 +257,13 @@ void ViewRenderer::Loop::make_frame() {
   }
   const EdgePointStats& stats = view_.engine->stats();
   note_shown_changes();
-  pace_.note_frame(begin, Clock::now(), is_shader_idle());
+  // What made a still view finer would have given way to a moving one.
+  std::chrono::duration<double> finer(stats.traced_still ? stats.shading_seconds : 0);
+  if (view_.compared && view_.compared->stats().traced_still) {
+    finer += std::chrono::duration<double>(view_.compared->stats().shading_seconds);
+  }
+  pace_.note_frame(begin + std::chrono::duration_cast<Clock::duration>(finer), Clock::now(),
+                   is_shader_idle());
   std::uint32_t samples = stats.still_paths;
   if (view_.compared) samples = std::min(samples, view_.compared->stats().still_paths);
   const auto wanted = std::uint32_t(view_.model->scene.image.samples_per_pixel);
@@ -274,7 +281,7 @@ bool ViewRenderer::Loop::is_shader_idle() {
       EdgePointSettings{}.density * double(picture_->width_px) * double(picture_->height_px);
   const bool idle = double(stats.new_points) >= 0.9 * planned_points_;
   planned_points_ = std::clamp(1.5 * double(stats.new_points), most / 8, most);
-  return idle || stats.traced;
+  return idle || stats.traced || stats.traced_still;
 }
 
 void ViewRenderer::Loop::publish(bool moving, bool converged) {

@@ -65,7 +65,7 @@ BuildSettings ViewRenderer::Loop::build_settings() {
   std::erase_if(stops_, [](const StopFlag& stop) { return stop.use_count() == 1; });
   stops_.push_back(build_stop_);
   if (stopped_) *build_stop_ = true;
-  return {settings_.threads, settings_.trace_below_ms, build_stop_};
+  return {settings_.threads, settings_.trace_below_ms, &hurry_, build_stop_};
 }
 
 // finish_build() hears of it.
@@ -89,6 +89,7 @@ bool ViewRenderer::Loop::put(Input input) {
     const std::lock_guard lock(mutex_);
     if (!mailbox_.put(std::move(input))) return false;
     woken_ = true;
+    hurry_ = true;
   }
   wake_.notify_all();
   return true;
@@ -124,6 +125,7 @@ void ViewRenderer::Loop::step() {
     const std::lock_guard lock(mutex_);
     tasks.swap(tasks_);
     woken_ = false;
+    hurry_ = false;
     send = next_send_;
   }
   for (const auto& task : tasks) task();

@@ -104,7 +104,8 @@ class ViewRenderer::Loop {
   std::optional<Clock::time_point> next_send_;
   bool woken_ = false;
   std::atomic<bool> stopped_ = false;
-  std::vector<StopFlag> stops_;  // of views that are built and shown
+  std::atomic<bool> hurry_ = false;  // inputs wait
+  std::vector<StopFlag> stops_;      // of views that are built and shown
 
   ViewRendererSettings settings_;
   ViewOutputs outputs_;

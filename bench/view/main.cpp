@@ -40,6 +40,7 @@ struct Arguments {
   std::string shader = "gi";
   int width_px = 1280, height_px = 720;
   double seconds = 8, inputs_a_second = 60;
+  double still_seconds = 0;
   int runs = 3;
 };
 
@@ -125,6 +126,8 @@ struct Run {
   std::vector<double> delays_ms, gaps_ms, work_ms;
   double frames_a_second = 0, frame_kb = 0, resident_mb = 0;
   std::size_t triangles = 0;
+  std::uint32_t still_samples = 0;
+  double still_seconds = 0;
 };
 
 // The camera of a message, turned about the target's vertical.
@@ -180,6 +183,18 @@ void move_camera(WebSocket& socket, const json& camera, const Arguments& argumen
   run.frame_kb = bytes / 1e3 / std::max(frames, 1);
 }
 
+// Until the view that stands still has converged, or the time is over.
+void wait_still(WebSocket& socket, const Arguments& arguments, Run& run) {
+  const Clock::time_point begin = Clock::now();
+  while (ms_since(begin) < arguments.still_seconds * 1e3) {
+    if (!socket.has_more(100)) continue;
+    const Frame frame = socket.read_and_acknowledge();
+    run.still_samples = frame.samples;
+    run.still_seconds = ms_since(begin) / 1e3;
+    if (frame.is_converged()) return;
+  }
+}
+
 Run measure(const Arguments& arguments, const std::string& model) {
   Run run;
   const Clock::time_point begin = Clock::now();
@@ -198,6 +213,7 @@ Run measure(const Arguments& arguments, const std::string& model) {
     frame = socket.read_and_acknowledge();
   }
   move_camera(socket, scene["camera"], arguments, run);
+  wait_still(socket, arguments, run);
   run.resident_mb = viewer.most_resident_mb();
   return run;
 }
@@ -216,6 +232,10 @@ void print_run(const std::string& name, const Run& run) {
       arris::bench::median(run.gaps_ms), part_of(run.gaps_ms, 1), arris::bench::median(run.work_ms),
       arris::bench::median(run.delays_ms), part_of(run.delays_ms, 0.95), run.frame_kb,
       run.resident_mb);
+  if (run.still_seconds > 0) {
+    fmt::print("{:34} | still: {} samples of each pixel after {:.1f} s\n", "", run.still_samples,
+               run.still_seconds);
+  }
   std::fflush(stdout);
 }
 
@@ -255,6 +275,8 @@ int main(int argc, char** argv) {
   app.add_option("--width", arguments.width_px, "of the picture in pixels");
   app.add_option("--height", arguments.height_px, "of the picture in pixels");
   app.add_option("--seconds", arguments.seconds, "for which the camera turns");
+  app.add_option("--still", arguments.still_seconds,
+                 "for which the camera then stands still at most, until the picture is done");
   app.add_option("--inputs", arguments.inputs_a_second, "camera inputs a second");
   app.add_option("--runs", arguments.runs, "of each model");
   CLI11_PARSE(app, argc, argv);

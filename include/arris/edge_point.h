@@ -50,12 +50,17 @@ struct EdgePointSettings {
   // A frame is made by tracing a point's paths through every pixel where that takes less: milliseconds, or, unless
   // `synchronous`, less than edges and points take themselves. If `synchronous`, by a ray's fixed cost. 0: never.
   double trace_below_ms = 0;
+  // Not `synchronous`: a view that has stood still for so many milliseconds is traced within next_frame(), for a
+  // quarter of a second each, instead of by points beside it. 0: never.
+  double trace_still_ms = 0;
   std::uint32_t seed = 0;
   int threads = 0;  // 0: all
   // `synchronous`: asked while points are shaded, by any of the threads, whether the rest of them is left out.
   // has_picture: the frame has one already, and it is about the next one; else next_frame() throws Error{failed} for
   // yes. Empty: never.
   std::function<bool(bool has_picture)> must_end;
+  // Set from any thread: what only makes a view that stands still finer ends soon.
+  const std::atomic<bool>* hurry = nullptr;
   // Set from any thread: next_frame(), and what the constructor prepares, end with Error{failed}.
   const std::atomic<bool>* stop = nullptr;
 };
@@ -76,6 +81,8 @@ struct EdgePointStats {
   // Every pixel was traced, without edges and points: stages but `total`, which has the tracing in it, classes and
   // edges are 0.
   bool traced = false;
+  // Paths of the view that stands still were traced within this frame (trace_still_ms).
+  bool traced_still = false;
   // Shaded since the last frame: points, and pixels of a view that stands still. `synchronous`: for this frame where
   // something has changed, else for the next one.
   std::uint64_t new_points = 0;

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "arris/error.h"
 #include "io/gltf_buffers.h"
@@ -11,6 +12,7 @@
 #include "io/gltf_mesh.h"
 #include "io/mesh_scene.h"
 #include "scene/limits.h"
+#include "scene/scene_bounds.h"
 
 namespace arris {
 namespace {
@@ -97,6 +99,7 @@ class SceneBuilder {
     if (scene_.objects.empty()) {
       throw Error(Error::Kind::input, where_, "the scene has no triangles to show");
     }
+    aim_camera();
     add_count(flattened_, "objects with a scale of 0 left out");
     add_count(orthographic_, "orthographic cameras left out");
     add_notes(document_.notes);
@@ -123,6 +126,15 @@ class SceneBuilder {
     object.world_from_object = world_from_node;
     object.rounding = node.rounding ? node.rounding : document_.meshes[mesh].rounding;
     scene_.objects.push_back(std::move(object));
+  }
+
+  // glTF's cameras have a direction. Who turns the view turns it about the target: beside the model's middle.
+  void aim_camera() {
+    if (!scene_.camera) return;
+    Camera& camera = *scene_.camera;
+    const Vec3d forward = camera.target - camera.position;
+    const double along = dot(world_bounds(scene_).center() - camera.position, forward);
+    if (along > 0 && std::isfinite(along)) camera.target = camera.position + forward * along;
   }
 
   void add_camera(const GltfCamera& from, const Affine3d& world_from_node) {

@@ -24,6 +24,7 @@
 #include "render/shadow_finder.h"
 #include "render/stale_points.h"
 #include "render/still_film.h"
+#include "render/still_tracer.h"
 #include "render/texture_tints.h"
 #include "render/trace_choice.h"
 #include "scene/validate_placement.h"
@@ -66,6 +67,7 @@ EdgePointSettings checked(const EdgePointSettings& settings) {
         settings.first_density, "within 0 and 1");
   check(settings.paths_per_point >= 0, "paths_per_point", settings.paths_per_point, "0 or more");
   check(settings.trace_below_ms >= 0, "trace_below_ms", settings.trace_below_ms, "0 or more");
+  check(settings.trace_still_ms >= 0, "trace_still_ms", settings.trace_still_ms, "0 or more");
   return settings;
 }
 
@@ -143,6 +145,7 @@ class EdgePointEngine::Impl {
       trace_frame(rays);
     } else {
       if (!workers_ && !has_points_) shade_first(rays);
+      if (must_trace_still()) trace_still(rays);
       make_frame(rays);
       // What has moved is shaded before it is shown: a frame of points of the scene before would be late.
       if (has_changed) {
@@ -159,7 +162,7 @@ class EdgePointEngine::Impl {
     has_points_ = !stats_.traced;
     ++frame_;
     ++still_frames_;
-    if (stats_.traced) return picture_;
+    if (stats_.traced || stats_.traced_still) return picture_;
     if (workers_) {
       workers_->set_plan(make_plan(rays, planned_density()));
       workers_->set_paused(false);
@@ -195,6 +198,8 @@ class EdgePointEngine::Impl {
 
   void view_changed() {
     still_frames_ = 0;
+    still_since_ = Clock::now();
+    still_tracer_.restart();
     ++view_;
     film_.clear();
     tints_.clear();
@@ -225,7 +230,9 @@ class EdgePointEngine::Impl {
     }
     const FrameReport report =
         maker_.make(view, {edges_.lists(), *shown_.shadow_edges}, cache_, frame, picture_);
-    film_.blend_into(picture_, kNeighbors * float(shader_.paths), settings_.threads);
+    // Points that nobody renews any more are worth less.
+    const int paths = stats_.traced_still ? 1 : shader_.paths;
+    film_.blend_into(picture_, kNeighbors * float(paths), settings_.threads);
     stats_.stages.total = frame_ms_ = milliseconds_since(start);
     keep_report(report, totals);
   }
@@ -248,6 +255,25 @@ class EdgePointEngine::Impl {
   }
   static void throw_stopped() {
     throw Error(Error::Kind::failed, "", "stopped before the first sample");
+  }
+
+  [[nodiscard]] bool must_trace_still() const {
+    return workers_ && settings_.trace_still_ms > 0 && is_still() &&
+           milliseconds_since(still_since_) >= settings_.trace_still_ms;
+  }
+
+  // All threads at once get much more done than workers between frames.
+  void trace_still(const CameraRays& camera) {
+    constexpr double kPieceMs = 250;
+    const Clock::time_point start = Clock::now();
+    const PixelFilter filter(image_.filter);
+    const PathRays rays = still_tracer_.trace(
+        {*shown_.scene, camera, filter, shader_, image_.width_px, image_.height_px},
+        {kPieceMs, settings_.hurry, settings_.stop, settings_.threads}, film_, stats_.new_points);
+    stats_.traced_still = true;
+    stats_.rays.total += rays.total;
+    stats_.rays.rounded += rays.rounded;
+    stats_.shading_seconds += milliseconds_since(start) / 1e3;
   }
 
   // Paths of the path tracer's sequence, which add up while the view stands still.
@@ -427,6 +453,8 @@ class EdgePointEngine::Impl {
   Image picture_;
   TextureTints tints_;
   StillFilm film_;
+  StillTracer still_tracer_;
+  Clock::time_point still_since_ = Clock::now();
   std::vector<std::uint8_t> wanted_;
   std::vector<Sphere> moved_;  // where objects were and are that have moved since the last plan
   TraceChoice choice_;

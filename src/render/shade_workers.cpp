@@ -1,6 +1,7 @@
 #include "render/shade_workers.h"
 
-#include <sys/resource.h>
+#include <pthread.h>
+#include <sched.h>
 
 #include <algorithm>
 #include <chrono>
@@ -9,12 +10,6 @@
 #include "base/flush_denormals.h"
 
 namespace arris {
-namespace {
-
-constexpr int kNiceness = 10;
-
-}  // namespace
-
 ShadeWorkers::ShadeWorkers(int threads) {
   const int count = threads > 0 ? threads : std::max(1, int(std::thread::hardware_concurrency()));
   for (int i = 0; i < count; ++i) threads_.emplace_back([this] { run(); });
@@ -53,9 +48,10 @@ std::vector<ShadeWorkers::Batch> ShadeWorkers::collect() {
 
 void ShadeWorkers::run() {
   const FlushDenormals flush;
-  // A frame that is ready to be sent, and the browser that draws it, are more urgent than points. On Linux each thread
-  // has a niceness of its own; where that can't be set all goes on as it was.
-  ::setpriority(PRIO_PROCESS, 0, kNiceness);
+  // A frame that is ready to be sent is more urgent than points: batch threads have the same share of the processors,
+  // but wake no later than others wish to. Where that can't be set all goes on as it was.
+  const sched_param batch{};
+  ::pthread_setschedparam(::pthread_self(), SCHED_BATCH, &batch);
   for (;;) {
     std::shared_ptr<const ShadePlan> plan;
     std::size_t first = 0;

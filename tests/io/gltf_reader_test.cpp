@@ -1,4 +1,5 @@
 #include "io/gltf_reader.h"
+#include "scene/scene_bounds.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -382,6 +383,17 @@ TEST(GltfReader, takes_the_rounding_radius_from_node_else_mesh_else_scene_else_a
 }
 
 // ------------------------------------------------------------------------------ cameras and lights
+
+// What it turns about in a viewer.
+TEST(GltfReader, cameras_look_at_what_is_beside_the_middle_of_the_model) {
+  GltfTestFile file = tetrahedron_file();
+  file.json["cameras"] = {
+      {{"type", "perspective"}, {"perspective", {{"yfov", 1}, {"znear", 0.1}}}}};
+  file.add("nodes", {{"camera", 0}, {"translation", {0.25, 0.5, 300}}});
+  const Scene scene = read_file(file);
+  const Bounds bounds = world_bounds(scene);
+  expect_near(scene.camera->target, {0.25, 0.5, bounds.center().z});
+}
 
 TEST(GltfReader, takes_the_first_perspective_camera) {
   GltfTestFile file = tetrahedron_file();

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cmath>
 #include <cstdint>
 #include <memory>
@@ -78,6 +79,31 @@ TEST(EdgePoint, a_still_view_converges_to_the_path_traced_picture) {
   // As good as the path tracer with as many paths.
   const double of_paths = rmse(path_picture(scene, 512), reference);
   EXPECT_LT(errors[2], 1.5 * of_paths);
+}
+
+// As viewers have it: the threads that shade points stand aside.
+TEST(EdgePoint, a_still_view_is_traced_where_it_may_be) {
+  const auto scene = prepare_scene(make_scene(64));
+  const Image reference = path_picture(scene, 1024);
+  std::atomic<bool> hurry = true;
+  EdgePointSettings settings;
+  settings.trace_still_ms = 1e-6;
+  settings.hurry = &hurry;
+  EdgePointEngine engine(scene, settings);
+  for (int i = 0; i < 3; ++i) engine.next_frame();
+  EXPECT_TRUE(engine.stats().traced_still);
+  EXPECT_EQ(engine.stats().new_points, 0U) << "there was no time for it";
+  hurry = false;
+  const Image* picture = &engine.next_frame();
+  EXPECT_GT(engine.stats().new_points, 0U);
+  while (engine.stats().still_paths < 512) picture = &engine.next_frame();
+  EXPECT_LT(rmse(*picture, reference), 1.5 * rmse(path_picture(scene, 512), reference));
+  Camera camera = *scene_of(*scene).camera;
+  camera.position.x += 0.1;
+  engine.set_camera(camera);
+  engine.next_frame();
+  EXPECT_FALSE(engine.stats().traced_still);
+  EXPECT_EQ(engine.stats().still_paths, 0U);
 }
 
 // Sticks far thinner than a pixel before nothing: points on them are hidden, or make those around them so, as often as
