@@ -2,6 +2,7 @@
 
 import { Compare } from "./compare.js";
 import { Connection } from "./connection.js";
+import { Errors } from "./errors.js";
 import { Files } from "./files.js";
 import { Input } from "./input.js";
 import { Keys, fillMouseHelp } from "./keys.js";
@@ -39,6 +40,7 @@ const compare = new Compare(session, picture);
 const objects = new Objects(session, (object) => view.lookAt(object, picture.aspect));
 const move = new Move({ session, objects, view, picture, messages, connection });
 const files = new Files({ session, connection, messages });
+new Errors({ connection, session, messages, refused: (seq) => session.setRefused(seq) });
 
 function remembered(name, otherwise) {
   try {
@@ -134,10 +136,6 @@ function tellTrouble(state) {
 connection.addEventListener("frame", ({ detail }) => picture.show(detail));
 connection.addEventListener("state", ({ detail }) => stats.setState(detail));
 connection.addEventListener("camera", ({ detail }) => view.follow(detail));
-connection.addEventListener("error", ({ detail }) => {
-  session.setRefused(detail.seq);
-  messages.error(detail.text, detail.remedy);
-});
 connection.addEventListener("busy", ({ detail }) => showBusy(detail.what));
 picture.addEventListener("drawn", () => byId("busy-text").textContent === FIRST_PICTURE && showBusy(null));
 session.addEventListener("scene", ({ detail }) => {

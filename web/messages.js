@@ -10,9 +10,22 @@ export class Messages {
     this.#list = list;
   }
 
-  /** An error stays until it is dismissed; the same one is not shown twice. `remedy` says what to do. */
-  error(text, remedy) {
-    this.#show("error", text, remedy);
+  /**
+   * An error stays until it is dismissed or cleared; the same one is not shown twice, and of those `about` the same
+   * thing only the newest. `remedy` says what to do.
+   */
+  error(text, remedy, about = "") {
+    for (const item of this.#list.querySelectorAll("[data-about]")) {
+      if (about && item.dataset.about === about && item.dataset.text !== text) item.remove();
+    }
+    this.#show("error", text, remedy).dataset.about = about;
+  }
+
+  /** Errors about this hold no longer; without it: no error does. Those that are `lasting` have ends of their own. */
+  clear(about) {
+    for (const item of this.#list.querySelectorAll("[data-about]")) {
+      if (!about || item.dataset.about === about) item.remove();
+    }
   }
 
   /** Passes by itself. */

@@ -101,7 +101,10 @@ class SocketSession : public ClientSession, public std::enable_shared_from_this<
         throw Error(Error::Kind::input, "message", "too many wait already; this one is not taken");
       }
     } catch (const Error& error) {
-      put(ViewText{"error", error_message(find_seq(text), error.what()), client_, {}});
+      const MessageHead head = find_head(text);
+      put(ViewText{"error", error_message(head.seq, error.what(), head.type), client_, {}});
+      // The page is to show what is, not what was asked for.
+      if (head.seq) server_.renderer().repeat_scene();
     }
   }
 

@@ -118,6 +118,7 @@ void ViewRenderer::Loop::undo_asked(const std::string& error) {
   for (const Asked& asked : asked_) add_marks(marks, asked.marks);
   asked_.clear();
   const PreparedScene& scene = *view_.engine->scene();
+  const bool is_rounding = desired_.rounding != default_rounding(scene);
   for (ViewEdits* edits : {&view_.edits, &desired_}) {
     edits->rounding = default_rounding(scene);
     for (std::size_t i = 0; i < edits->objects.size(); ++i) {
@@ -131,7 +132,7 @@ void ViewRenderer::Loop::undo_asked(const std::string& error) {
     desired_.compared.reset();
   }
   add_marks(shown_, marks);
-  send_errors(marks, error);
+  send_errors(marks, error, is_rounding ? "rounding" : "object");
   send_scene_soon();
 }
 
@@ -178,6 +179,8 @@ void ViewRenderer::Loop::finish_build() {
     if (!view) return;
     if (*build_stop_) throw Error(Error::Kind::failed, "", "stopped");
     take_view(std::move(*view));
+    // What was said of the model before, or of its file.
+    if (opening_) send("error", no_error_message());
   } catch (const std::exception& problem) {
     error = problem.what();
     if (*build_stop_) return drop_build();
@@ -192,7 +195,8 @@ void ViewRenderer::Loop::finish_build() {
       desired_.camera = camera;
       if (built_.size == size) desired_.size = view_.edits.size;
     }
-    if (!opening_ || !opening_->done) send_errors(building_, error);
+    if (!opening_) send_errors(building_, error, find_change(view_.edits, built_));
+    if (opening_ && !opening_->done) send_errors({}, error, kAboutFile);
   }
   add_marks(shown_, std::exchange(building_, {}));
   if (opening_ && opening_->done) opening_->done(error);

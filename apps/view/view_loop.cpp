@@ -181,7 +181,7 @@ void ViewRenderer::Loop::take_inputs() {
       add_marks(shown_, input.marks);
       send("error",
            error_message(input.marks.empty() ? std::nullopt : std::optional(input.marks.back().seq),
-                         error.what()),
+                         error.what(), type_of(input.what)),
            input.client);
       // The page is to show what is, not what was asked for.
       send_scene_soon();
@@ -296,10 +296,12 @@ void ViewRenderer::Loop::send(const char* type, std::string text, std::optional<
 }
 
 // To each client that has sent one of them, with the newest seq of its own.
-void ViewRenderer::Loop::send_errors(const std::vector<InputMark>& marks,
-                                     const std::string& what) const {
-  if (marks.empty()) return send("error", error_message({}, what));
-  for (const InputMark& mark : marks) send("error", error_message(mark.seq, what), mark.client);
+void ViewRenderer::Loop::send_errors(const std::vector<InputMark>& marks, const std::string& what,
+                                     const std::string& about) const {
+  if (marks.empty()) return send("error", error_message({}, what, about));
+  for (const InputMark& mark : marks) {
+    send("error", error_message(mark.seq, what, about), mark.client);
+  }
 }
 
 // Or only the camera, to those who have not set it.

@@ -44,6 +44,7 @@ class ViewRenderer::Loop {
   void open(std::filesystem::path file, std::string name,
             std::function<void(const std::string&)> done);
   void reload();
+  void send_scene_soon() { scene_dirty_ = true; }
 
  private:
   // What engines have been told and don't show yet.
@@ -87,9 +88,9 @@ class ViewRenderer::Loop {
   const Image& compose(const Image& main, const Image* right);
   void send_state(bool now);
   void send_scene();
-  void send_scene_soon() { scene_dirty_ = true; }
   [[nodiscard]] bool has_news() const { return scene_dirty_ || camera_dirty_; }
-  void send_errors(const std::vector<InputMark>& marks, const std::string& what) const;
+  void send_errors(const std::vector<InputMark>& marks, const std::string& what,
+                   const std::string& about) const;
   void send(const char* type, std::string text, std::optional<ClientId> to = {},
             std::optional<ClientId> but_not = {}) const;
   void set_busy(const std::string& what);

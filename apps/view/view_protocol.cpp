@@ -241,6 +241,7 @@ SetQuality parse_quality(const Keys& keys) {
 
 using Parse = MessageKind (*)(const Keys& keys);
 
+// In the order of MessageKind.
 const Names<Parse> kParsers{
     {"hello", [](const Keys& keys) -> MessageKind { return Hello{keys.size("size")}; }},
     {"ack", [](const Keys& keys) -> MessageKind { return Ack{keys.whole("frame")}; }},
@@ -309,15 +310,24 @@ ClientMessage parse_message(std::string_view text) {
   return message;
 }
 
-std::optional<std::uint32_t> find_seq(std::string_view text) {
-  if (text.size() > kMaxMessageBytes) return std::nullopt;
+MessageHead find_head(std::string_view text) {
+  MessageHead head;
+  if (text.size() > kMaxMessageBytes) return head;
   try {
     const json object = parse_json(text);
     const Keys keys(object, "");
-    if (keys.find("seq") != nullptr) return keys.whole("seq");
+    if (keys.find("type") != nullptr) {
+      std::string type = keys.text("type");
+      if (std::ranges::count(names_in(kParsers), type) > 0) head.type = std::move(type);
+    }
+    if (keys.find("seq") != nullptr) head.seq = keys.whole("seq");
   } catch (const Error&) {
   }
-  return std::nullopt;
+  return head;
+}
+
+const char* type_of(const MessageKind& what) {
+  return kParsers[what.index()].first.c_str();
 }
 
 const char* name_of(LightChoice choice) {

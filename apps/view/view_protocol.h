@@ -104,8 +104,14 @@ struct ClientMessage {
 
 ClientMessage parse_message(std::string_view text);
 
-// The `seq` of a text that parse_message() refuses, if one can be seen: for the answer.
-std::optional<std::uint32_t> find_seq(std::string_view text);
+// What can be seen of a text that parse_message() refuses: for the answer.
+struct MessageHead {
+  std::optional<std::uint32_t> seq;
+  std::string type;  // empty: none that is known
+};
+MessageHead find_head(std::string_view text);
+
+const char* type_of(const MessageKind& what);
 
 const char* name_of(LightChoice choice);
 const char* name_of(EdgePointShader shader);

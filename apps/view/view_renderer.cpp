@@ -46,6 +46,9 @@ void ViewRenderer::open(std::filesystem::path file, std::string name,
   loop_->post([loop = loop_.get(), file = std::move(file), name = std::move(name),
                done = std::move(done)] { loop->open(file, name, done); });
 }
+void ViewRenderer::repeat_scene() {
+  loop_->post([loop = loop_.get()] { loop->send_scene_soon(); });
+}
 void ViewRenderer::reload() {
   loop_->post([loop = loop_.get()] { loop->reload(); });
 }

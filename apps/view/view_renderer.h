@@ -73,6 +73,8 @@ class ViewRenderer {
   void leave(ClientId client);
   // False: too many inputs wait.
   bool put(ClientId client, const ClientMessage& message);
+  // To all clients, as after a change: one of them shows what was refused.
+  void repeat_scene();
   // When the first client will take a frame, or took it, had it been there; nothing: all have one that waits.
   void set_next_send(std::optional<Clock::time_point> time);
   // `done` is called by the renderer's thread.

@@ -189,12 +189,18 @@ std::string busy_message(const std::string& what) {
   return to_text(out);
 }
 
-std::string error_message(std::optional<std::uint32_t> seq, const std::string& what) {
+std::string error_message(std::optional<std::uint32_t> seq, const std::string& what,
+                          const std::string& about) {
   const std::size_t end = what.find("; ");
   json out{{"type", "error"}, {"text", what.substr(0, end)}};
   if (end != std::string::npos) out["remedy"] = what.substr(end + 2);
   if (seq) out["seq"] = *seq;
+  if (!about.empty()) out["about"] = about;
   return to_text(out);
+}
+
+std::string no_error_message(const std::string& about) {
+  return error_message({}, "", about);
 }
 
 }  // namespace arris::view

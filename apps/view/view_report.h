@@ -32,7 +32,11 @@ std::string picked_message(std::optional<std::uint32_t> seq, const std::optional
 std::string beam_message(const BeamWorker::Status& status);
 // Empty: the work has ended.
 std::string busy_message(const std::string& what);
-// What follows the first "; " is the remedy.
-std::string error_message(std::optional<std::uint32_t> seq, const std::string& what);
+// What follows the first "; " is the remedy. about: the type of the message that caused it, kAboutFile, or nothing.
+std::string error_message(std::optional<std::uint32_t> seq, const std::string& what,
+                          const std::string& about = {});
+inline constexpr const char* kAboutFile = "file";
+// Errors of this kind hold no longer; empty: all.
+std::string no_error_message(const std::string& about = {});
 
 }  // namespace arris::view

@@ -212,7 +212,7 @@ std::optional<ViewText> ViewServer::Impl::watch_problem() const {
   if (watch_problem_.empty()) return std::nullopt;
   const std::string text =
       watch_problem_ + ", the picture shows what was read before; put it back to go on";
-  return ViewText{"error", error_message({}, text), {}, {}};
+  return ViewText{"error", error_message({}, text, kAboutFile), {}, {}};
 }
 
 void ViewServer::Impl::watch() {
@@ -223,7 +223,7 @@ void ViewServer::Impl::watch() {
     if (look.changed) renderer_->reload();
     if (look.problem != watch_problem_) {
       watch_problem_ = std::move(look.problem);
-      if (const auto text = watch_problem()) send(*text);
+      send(watch_problem().value_or(ViewText{"error", no_error_message(kAboutFile), {}, {}}));
     }
     watch();
   });

@@ -344,6 +344,21 @@ ViewWork find_work(const ViewEdits& from, const ViewEdits& to) {
   return from.split != to.split || from.overlay != to.overlay ? ViewWork::redraw : ViewWork::none;
 }
 
+const char* find_change(const ViewEdits& from, const ViewEdits& to) {
+  if (from.rounding != to.rounding) return "rounding";
+  if (from.objects != to.objects) return "object";
+  if (from.compared != to.compared) return "compare";
+  if (from.size != to.size) return "size";
+  if (from.ground != to.ground) return "ground";
+  if (from.material != to.material) return "material";
+  if (from.shader != to.shader) return "shader";
+  if (from.lighting != to.lighting || from.strength != to.strength ||
+      from.rotation_deg != to.rotation_deg) {
+    return "light";
+  }
+  return "";
+}
+
 std::vector<Bounds> first_bounds(const ViewModel& model) {
   std::vector<Bounds> bounds;
   for (const Object& object : model.scene.objects) {

@@ -91,6 +91,8 @@ enum class ViewWork {
   prepare,     // all else
 };
 ViewWork find_work(const ViewEdits& from, const ViewEdits& to);
+// The message (view_protocol.h) that makes the difference; of several the one that fails the most easily, of none "".
+const char* find_change(const ViewEdits& from, const ViewEdits& to);
 
 // In the world, where the file has them, by objects.
 std::vector<Bounds> first_bounds(const ViewModel& model);

@@ -11,7 +11,7 @@
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace arris::view;  // NOLINT(google-build-using-namespace)
   const std::string_view text(reinterpret_cast<const char*>(data), size);
-  find_seq(text);
+  find_head(text);
   parse_target(text);
   upload_extension(text);
   is_own_host(text, "127.0.0.1");

@@ -155,10 +155,16 @@ TEST(ViewProgram, says_that_a_file_was_deleted_and_goes_on_when_it_is_back) {
   const auto error = socket.read_text("error");
   EXPECT_THAT(error["text"].get<std::string>(), HasSubstr("cube.stl was deleted"));
   EXPECT_THAT(error["remedy"].get<std::string>(), HasSubstr("put it back"));
+  EXPECT_EQ(error["about"], "file");
   WebSocket other(view.port(), view.token());  // who comes later hears of it, too
   EXPECT_EQ(other.read_text("error"), error);
   EXPECT_EQ(other.read_text("scene")["bounds"]["upper"][0], 2);
   test::write_text(place / "cube.stl", test::cube_stl(3));
+  const auto cleared = other.read_text("error");  // it holds no longer
+  EXPECT_EQ(cleared["text"], "");
+  EXPECT_EQ(cleared["about"], "file");
+  EXPECT_FALSE(
+      other.read_text("error").contains("about"));  // nor what was said of the model before
   while (socket.read_text("scene")["bounds"]["upper"][0] != 3) {
   }
 }
