@@ -17,10 +17,11 @@ export function logScale(low, high) {
 }
 const sameScale = { toSlider: (value) => value, fromSlider: (at) => at };
 
-/** From a hair to the largest radius that parts of such a size take. */
-export function radiusScale({ lower, upper }) {
+/** From a hair to the largest radius: just below the `limit` that the server knows, or what parts of such a size take. */
+export function radiusScale({ lower, upper }, limit = null) {
   const diagonal = length(subtract(upper, lower)) || 1;
-  return logScale(diagonal * 2e-4, diagonal * 0.1);
+  const high = limit > 0 ? limit * 0.99 : diagonal * 0.1;
+  return logScale(Math.min(diagonal * 2e-4, high / 100), high);
 }
 
 /** The protocol's radius of what was typed: a number, "8%", "auto", or undefined. */
@@ -37,6 +38,16 @@ export function usedRadius(radius, objects) {
   if (typeof radius === "number") return radius;
   const largest = Math.max(0, ...objects.filter((object) => object.radius === null).map(({ rounded }) => rounded ?? 0));
   return largest > 0 ? largest : null;
+}
+
+/**
+ * What a radius that was given changes: 0 makes edges sharp, any other rounds those that are, unless it is that of the
+ * rounding which they are compared with.
+ */
+export function radiusChange(radius, { rounding, compare }) {
+  if (radius === 0 || radius === "0%") return { method: "none" };
+  const isSeen = rounding.method !== "none" || (compare?.method ?? "none") !== "none";
+  return isSeen ? { radius } : { radius, method: "exact" };
 }
 
 const formatRadius = (radius) => (typeof radius === "number" ? formatNumber(radius, 3) : radius);
@@ -94,13 +105,14 @@ export class Panels {
     const round = (fields) => this.#session.send("rounding", fields, (scene) => Object.assign(scene.rounding, fields));
     const slider = byId("radius-slider");
     const field = byId("radius");
-    slider.addEventListener("input", () => round({ radius: this.#radiusScale.fromSlider(Number(slider.value)) }));
+    const setRadius = (radius) => this.#session.scene && round(radiusChange(radius, this.#session.scene));
+    slider.addEventListener("input", () => setRadius(this.#radiusScale.fromSlider(Number(slider.value))));
     field.addEventListener("change", () => {
       const radius = parseRadius(field.value);
       field.setCustomValidity(radius === undefined ? "A length as 0.5, or in percent of what fits as 8%" : "");
-      if (field.reportValidity()) round({ radius });
+      if (field.reportValidity()) setRadius(radius);
     });
-    byId("radius-auto").addEventListener("click", () => round({ radius: "auto" }));
+    byId("radius-auto").addEventListener("click", () => setRadius("auto"));
     this.#show.method = connectChoice("method", (method) => round({ method }));
     this.#show.edges = connectChoice("edges", (edges) => round({ edges }));
     this.#show.minAngle = connectNumber("min-angle", () => sameScale, (value) => round({ min_angle: value }));
@@ -162,8 +174,9 @@ export class Panels {
     }
   }
 
-  #updateRounding({ rounding, bounds, objects }) {
-    this.#radiusScale = radiusScale(bounds);
+  #updateRounding({ rounding, bounds, objects, radius_limit: limit }) {
+    this.#radiusScale = radiusScale(bounds, limit);
+    byId("rounding-note").hidden = !objects.length || !objects.every(({ csg }) => csg);
     const { radius } = rounding;
     const used = usedRadius(radius, objects);
     const slider = byId("radius-slider");

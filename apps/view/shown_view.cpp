@@ -114,8 +114,8 @@ std::unique_ptr<EdgePointEngine> make_engine(const ViewModel& model, const Scene
 }  // namespace
 
 UsableView usable_parts(const ShownView& view) {
-  return {view.model, view.edits, view.staged, view.engine->scene(),
-          view.compared ? view.compared->scene() : nullptr};
+  return {view.model,   view.edits,           view.staged,
+          view.inradii, view.engine->scene(), view.compared ? view.compared->scene() : nullptr};
 }
 
 ShownView build_view(std::shared_ptr<const ViewModel> model, const ViewEdits& edits,
@@ -134,6 +134,7 @@ ShownView build_view(std::shared_ptr<const ViewModel> model, const ViewEdits& ed
   view.engine = make_engine(*model, main, edits, settings);
   if (other) view.compared = make_engine(*model, other, edits, settings);
   view.bounds = first_bounds(*model);
+  view.inradii = before && before->model == model ? before->inradii : first_inradii(*model);
   view.model = std::move(model);
   return view;
 }

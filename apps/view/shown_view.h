@@ -24,7 +24,8 @@ struct ShownView {
   std::shared_ptr<const ViewModel> model;
   ViewEdits edits;
   StagedView staged;
-  std::vector<Bounds> bounds;  // first_bounds()
+  std::vector<Bounds> bounds;                  // first_bounds()
+  std::vector<std::optional<double>> inradii;  // first_inradii()
   std::unique_ptr<EdgePointEngine> engine;
   std::unique_ptr<EdgePointEngine> compared;  // null: nothing is compared
 };
@@ -41,6 +42,7 @@ struct UsableView {
   std::shared_ptr<const ViewModel> model;
   ViewEdits edits;
   StagedView staged;
+  std::vector<std::optional<double>> inradii;
   std::shared_ptr<const PreparedScene> scene, compared;
 };
 UsableView usable_parts(const ShownView& view);

@@ -101,6 +101,7 @@ std::string scene_message(const ShownView& view, const ViewEdits& edits, bool up
            {"camera", to_json(edits.camera)},
            {"up", to_json(model.scene.up)},
            {"rounding", to_json(edits.rounding)},
+           {"radius_limit", nullptr},
            {"lighting", name_of(edits.lighting)},
            {"lightings", std::move(lightings)},
            {"strength", edits.strength},
@@ -114,6 +115,7 @@ std::string scene_message(const ShownView& view, const ViewEdits& edits, bool up
            {"upload", upload},
            {"objects", std::move(objects)},
            {"size", to_json(edits.size)}};
+  if (const auto limit = radius_limit(model, edits, view.inradii)) out["radius_limit"] = *limit;
   if (edits.material) out["material"] = *edits.material;
   if (edits.compared) {
     out["compare"] = {{"method", name_of(*edits.compared)}, {"split", edits.split}};

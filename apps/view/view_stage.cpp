@@ -4,13 +4,17 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <span>
 #include <utility>
 
 #include "arris/error.h"
+#include "arris/rounding.h"
 #include "base/nearest_name.h"
 #include "base/utf8_text.h"
 #include "render/camera.h"
 #include "render/ground_frame.h"
+#include "render/scene_rounding.h"
 #include "scene/material_presets.h"
 #include "scene/validate_placement.h"
 
@@ -365,6 +369,62 @@ std::vector<Bounds> first_bounds(const ViewModel& model) {
     bounds.push_back(world_bounds(model.scene, object));
   }
   return bounds;
+}
+
+std::vector<std::optional<double>> first_inradii(const ViewModel& model) {
+  // Half a second's work. Larger ones are scans and the like, seldom convex.
+  constexpr std::size_t kMostTriangles = 200'000;
+  const Scene& scene = model.scene;
+  const double min_angle = scene.rounding.value_or(RoundingSettings{}).min_angle;
+  std::map<std::uint32_t, std::optional<double>> of_meshes;  // in their own space
+  std::size_t triangles = 0;
+  const auto inradius_of = [&](const Mesh& mesh, std::span<const Vec3f> positions) {
+    triangles += mesh.triangles.size();
+    if (triangles > kMostTriangles) return std::optional<double>();
+    try {
+      return find_radius_limits({positions, mesh.triangles}, min_angle).smallest_inradius;
+    } catch (const Error&) {  // preparing says so, if it matters
+      return std::optional<double>();
+    }
+  };
+  std::vector<std::optional<double>> out;
+  for (const Object& object : scene.objects) {
+    std::optional<double>& inradius = out.emplace_back();
+    if (object.csg) continue;
+    const Mesh& mesh = scene.meshes[object.mesh.index];
+    const auto scale = similarity_scale(object.world_from_object.linear);
+    if (!scale) {
+      std::vector<Vec3f> positions;
+      for (const Vec3f& p : mesh.positions) {
+        positions.emplace_back(transform_point(object.world_from_object, Vec3d(p)));
+      }
+      inradius = inradius_of(mesh, positions);
+      continue;
+    }
+    const auto [known, is_new] = of_meshes.try_emplace(object.mesh.index);
+    if (is_new) known->second = inradius_of(mesh, mesh.positions);
+    if (known->second) inradius = *known->second * *scale;
+  }
+  return out;
+}
+
+std::optional<double> radius_limit(const ViewModel& model, const ViewEdits& edits,
+                                   const std::vector<std::optional<double>>& first_inradii) {
+  std::optional<double> limit;
+  for (std::size_t i = 0; i < edits.objects.size(); ++i) {
+    const ObjectEdit& edit = edits.objects[i];
+    if (!edit.visible || edit.rounding || !first_inradii[i]) continue;
+    double inradius = *first_inradii[i];
+    const Mat3d& before = model.scene.objects[i].world_from_object.linear;
+    const Mat3d& now = edit.world_from_object.linear;
+    if (before != now) {
+      const auto scale_before = similarity_scale(before), scale_now = similarity_scale(now);
+      if (!scale_before || !scale_now) continue;
+      inradius *= *scale_now / *scale_before;
+    }
+    limit = std::min(inradius, limit.value_or(inradius));
+  }
+  return limit;
 }
 
 Bounds moved_bounds(const Bounds& bounds, const Affine3d& before, const Affine3d& now) {

@@ -96,6 +96,12 @@ const char* find_change(const ViewEdits& from, const ViewEdits& to);
 
 // In the world, where the file has them, by objects.
 std::vector<Bounds> first_bounds(const ViewModel& model);
+// The least inradius of its convex solids, in the world, where the file has it; empty: it has none, or is too large a
+// mesh to look.
+std::vector<std::optional<double>> first_inradii(const ViewModel& model);
+// How large a radius all visible objects take that have none of their own; empty: there is no limit that is known.
+std::optional<double> radius_limit(const ViewModel& model, const ViewEdits& edits,
+                                   const std::vector<std::optional<double>>& first_inradii);
 // Of a box that was moved with an object.
 Bounds moved_bounds(const Bounds& bounds, const Affine3d& before, const Affine3d& now);
 
