@@ -168,13 +168,5 @@ export class Camera {
   }
 }
 
-/** Whether a camera shows a box whole in a picture of this width over height; `slack` times larger would do, too. */
-export function showsBox(camera, { lower, upper }, aspect, slack = 1) {
-  return [...Array(8).keys()].every((at) => {
-    const seen = camera.project([0, 1, 2].map((axis) => ((at >> axis) & 1 ? upper[axis] : lower[axis])));
-    return seen && Math.abs(seen[0]) <= (slack * aspect) / 2 && Math.abs(seen[1]) <= slack / 2;
-  });
-}
-
 /** What is up in a scene, or what its first camera takes for it. */
 export const upAxis = (scene) => snapToAxis(scene.up ?? scene.camera.up);

@@ -34,7 +34,7 @@ const wantedAspect = () => {
 };
 const picture = new Picture(canvas, (frame) => connection.acknowledge(frame), wantedAspect);
 const stats = new Stats();
-const view = new View(session, wantedAspect);
+const view = new View(session);
 const panels = new Panels(session);
 const compare = new Compare(session, picture);
 const objects = new Objects(session, (object) => view.lookAt(object, picture.aspect));
@@ -231,7 +231,7 @@ keys.add("1 · 3 · 7 · 9", "front, right, top, isometric view", {
 keys.add("2 · 8", "a quarter turn up, down", { 2: turn(0, Math.PI / 2), 8: turn(0, -Math.PI / 2) });
 keys.add("4 · 6", "roll a quarter left, right", { 4: roll(Math.PI / 2), 6: roll(-Math.PI / 2) });
 keys.add("5", "perspective or parallel projection", { 5: () => view.change((camera) => camera.toggleParallel()) });
-keys.add("Enter", "the view as it was at first", { Enter: () => view.reset() });
+keys.add("Enter", "the view as it was at first", { Enter: () => view.frame("first") });
 keys.add("Arrows", "turn; move the object while Move is on", {
   ArrowLeft: () => arrow(-1, 0),
   ArrowRight: () => arrow(1, 0),

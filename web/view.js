@@ -1,32 +1,21 @@
 // view.js — the camera between the user's hands and the server.
 
-import { Camera, showsBox, upAxis } from "./camera.js";
+import { Camera, upAxis } from "./camera.js";
 import { length } from "./vector.js";
 
 // As many cameras on their way as are told apart; frames lag by far fewer.
 const REMEMBERED = 256;
-// What models are framed for before a page has asked for a size.
-const FIRST_ASPECT = 16 / 9;
-// Corners of the bounds stick out of a picture that shows all of the model.
-const BOX_SLACK = 1.3;
 
 export class View extends EventTarget {
   #session;
   #sent = new Map();
-  #wantedAspect;
-  #isFitting = false;
 
-  /**
-   * Dispatches "camera" when `shown`, the camera of the picture on the screen, has changed. `wantedAspect()` is the
-   * width over height of the picture that this page has asked for.
-   */
-  constructor(session, wantedAspect) {
+  /** Dispatches "camera" when `shown`, the camera of the picture on the screen, has changed. */
+  constructor(session) {
     super();
     this.#session = session;
-    this.#wantedAspect = wantedAspect;
     this.camera = new Camera();
     this.shown = this.camera;
-    this.first = null;
     this.isActive = false;
     session.addEventListener("scene", ({ detail }) => detail?.fromServer && this.#take(detail.isNew));
   }
@@ -48,14 +37,9 @@ export class View extends EventTarget {
     if (this.#sent.size > REMEMBERED) this.#sent.delete(this.#sent.keys().next().value);
   }
 
-  /** One of the server's views. */
+  /** One of the server's views; `direction` as in the protocol, or none. */
   frame(direction) {
     this.#session.send("frame_view", direction ? { direction } : {});
-  }
-
-  /** To where the model was first seen from. */
-  reset() {
-    if (this.first) this.change((camera) => Object.assign(camera, this.first.clone()));
   }
 
   lookAt(object, aspect) {
@@ -72,23 +56,12 @@ export class View extends EventTarget {
     this.dispatchEvent(new Event("camera"));
   }
 
-  /** A model that was framed for a wide picture would be cut in a narrow one. A view cut in both is meant so. */
-  #fit({ bounds }) {
-    const isCut = !showsBox(this.camera, bounds, this.#wantedAspect());
-    if (!isCut || !showsBox(this.camera, bounds, FIRST_ASPECT, BOX_SLACK)) return;
-    this.#isFitting = true;
-    this.frame("");
-  }
-
   #take(isNew) {
     const { scene } = this.#session;
     if (isNew) this.camera = new Camera(upAxis(scene));
     else if (this.isActive || this.#session.isPending("camera")) return;
     this.camera.set(scene.camera);
     this.camera.setLimits(scene.bounds);
-    if (isNew || this.#isFitting) this.first = this.camera.clone();
-    this.#isFitting = false;
-    if (isNew) this.#fit(scene);
     this.#sent.clear();
     this.shown = this.camera.clone();
     this.dispatchEvent(new Event("camera"));

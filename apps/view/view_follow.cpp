@@ -167,6 +167,7 @@ void ViewRenderer::Loop::start_open() {
         ViewEdits now = first_edits(*model);
         now.size = edits.size;
         if (before) now = carry_over(first_edits(*before), edits, std::move(now));
+        fit_camera(*model, now);
         return build_view(model, now, settings);
       },
       [this] { post([] {}); });
@@ -189,11 +190,11 @@ void ViewRenderer::Loop::finish_build() {
     }
     if (!opening_) {
       // The camera is not what could not be prepared.
-      const Camera camera = desired_.camera;
-      const PictureSize size = desired_.size;
-      desired_ = view_.edits;
-      desired_.camera = camera;
-      if (built_.size == size) desired_.size = view_.edits.size;
+      const ViewEdits asked = std::exchange(desired_, view_.edits);
+      desired_.camera = asked.camera;
+      desired_.framed = asked.framed;
+      if (built_.size != asked.size) desired_.size = asked.size;
+      fit_camera(*view_.model, desired_);
     }
     if (!opening_) send_errors(building_, error, find_change(view_.edits, built_));
     if (opening_ && !opening_->done) send_errors({}, error, kAboutFile);
@@ -218,11 +219,12 @@ void ViewRenderer::Loop::drop_build() {
 void ViewRenderer::Loop::take_view(ShownView view) {
   if (opening_ && opening_->keeps_edits) {
     desired_ = carry_over(built_, desired_, view.edits);
+    fit_camera(*view.model, desired_);
   } else if (opening_) {
     // Nothing that was asked of the model before has a meaning for this one.
     const PictureSize size = desired_.size;
     desired_ = view.edits;
-    desired_.size = size;
+    apply_message(*view.model, SetSize{size}, desired_);
   }
   picture_ = nullptr;
   shooter_.reset();

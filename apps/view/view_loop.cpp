@@ -26,7 +26,7 @@ constexpr auto kUnreadyWait = std::chrono::milliseconds(250);
 bool is_move(const MessageKind& what) {
   if (const auto* object = std::get_if<SetObject>(&what))
     return object->world_from_object.has_value();
-  return std::holds_alternative<SetCamera>(what);
+  return std::holds_alternative<SetCamera>(what) || std::holds_alternative<FrameView>(what);
 }
 
 }  // namespace
@@ -209,6 +209,7 @@ void ViewRenderer::Loop::apply(const Input& input) {
     return;
   }
   apply_message(*view_.model, input.what, desired_);
+  note_active(input);
   const bool is_next_frame = std::holds_alternative<SetCamera>(input.what) ||
                              std::holds_alternative<FrameView>(input.what) ||
                              std::holds_alternative<SetOverlay>(input.what);
@@ -263,7 +264,7 @@ void ViewRenderer::Loop::poll_beam() {
 // Clients.
 
 void ViewRenderer::Loop::join(ClientId client) {
-  clients_.push_back(client);
+  clients_.push_back({client, {}});
   rest_at_.reset();
   settled_ = false;
   pace_.hurry(Clock::now());
@@ -272,8 +273,18 @@ void ViewRenderer::Loop::join(ClientId client) {
 }
 
 void ViewRenderer::Loop::leave(ClientId client) {
-  std::erase(clients_, client);
+  std::erase_if(clients_, [&](const Client& other) { return other.id == client; });
   if (clients_.empty()) rest_at_ = Clock::now() + settings_.rest_after;
+  if (sized_by_ == client) {
+    sized_by_.reset();
+    const auto heir =
+        std::ranges::find_if(clients_.rbegin(), clients_.rend(),
+                             [](const Client& other) { return other.size.has_value(); });
+    if (heir != clients_.rend()) {
+      sized_by_ = heir->id;
+      set_size(*heir->size);
+    }
+  }
   const auto is_theirs = [&](const InputMark& mark) { return mark.client == client; };
   std::erase_if(shown_, is_theirs);
   std::erase_if(taken_, is_theirs);
@@ -284,10 +295,30 @@ void ViewRenderer::Loop::leave(ClientId client) {
   mailbox_.forget(client);
 }
 
+void ViewRenderer::Loop::note_active(const Input& input) {
+  const auto client = std::ranges::find(clients_, input.client, &Client::id);
+  if (client == clients_.end()) return;
+  std::optional<PictureSize> size;
+  if (const auto* hello = std::get_if<Hello>(&input.what)) size = hello->size;
+  if (const auto* asked = std::get_if<SetSize>(&input.what)) size = asked->size;
+  if (size) {
+    client->size = size;
+    sized_by_ = input.client;
+  }
+  std::rotate(client, client + 1, clients_.end());
+}
+
+void ViewRenderer::Loop::set_size(PictureSize size) {
+  apply_message(*view_.model, SetSize{size}, desired_);
+  settled_ = false;
+  pace_.hurry(Clock::now());
+  send_scene_soon();
+}
+
 void ViewRenderer::Loop::rest() {
   rest_at_.reset();
   const PictureSize first = first_edits(*view_.model).size;
-  if (area_of(desired_.size) > area_of(first)) desired_.size = first;
+  if (area_of(desired_.size) > area_of(first)) set_size(first);
 }
 
 void ViewRenderer::Loop::send(const char* type, std::string text, std::optional<ClientId> to,
@@ -312,9 +343,9 @@ void ViewRenderer::Loop::send_scene() {
   }
   scene_dirty_ = false;
   const std::string text = scene_message(view_, desired_, settings_.upload);
-  for (const ClientId client : clients_) {
-    const auto mark = std::ranges::find(taken_, client, &InputMark::client);
-    send("scene", with_seq(text, mark == taken_.end() ? 0 : mark->seq), client);
+  for (const Client& client : clients_) {
+    const auto mark = std::ranges::find(taken_, client.id, &InputMark::client);
+    send("scene", with_seq(text, mark == taken_.end() ? 0 : mark->seq), client.id);
   }
 }
 

@@ -52,6 +52,10 @@ class ViewRenderer::Loop {
     ViewEdits edits;
     std::vector<InputMark> marks;
   };
+  struct Client {
+    ClientId id = 0;
+    std::optional<PictureSize> size;  // that it has asked for
+  };
   struct OpenRequest {
     std::filesystem::path file;
     std::string name;
@@ -82,6 +86,8 @@ class ViewRenderer::Loop {
   [[nodiscard]] Clock::time_point frame_due(std::optional<Clock::time_point> send) const;
   [[nodiscard]] bool is_shader_idle();
   void rest();
+  void set_size(PictureSize size);
+  void note_active(const Input& input);
   void make_frame();
   void publish(bool moving, bool converged);
   void make_pictures();
@@ -136,7 +142,8 @@ class ViewRenderer::Loop {
   FramePace pace_;
   bool settled_ = false;  // nothing to be seen would change
   std::uint32_t frame_number_ = 0;
-  std::vector<ClientId> clients_;
+  std::vector<Client> clients_;               // who has said something last is the last one
+  std::optional<ClientId> sized_by_;          // whose size the picture has
   std::optional<Clock::time_point> rest_at_;  // set: nobody looks at a large picture
   bool scene_dirty_ = false, camera_dirty_ = false;
   std::optional<ClientId> camera_but_not_;  // who has set it; empty: several

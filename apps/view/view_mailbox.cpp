@@ -7,13 +7,16 @@
 namespace arris::view {
 namespace {
 
-// Of several objects and picks each is an input of its own.
+// Of several objects, and of what concerns one client alone, each is an input of its own.
 bool is_same_kind(const Input& a, const Input& b) {
   if (a.what.index() != b.what.index()) return false;
   if (const auto* object = std::get_if<SetObject>(&a.what)) {
     return object->id == std::get<SetObject>(b.what).id;
   }
-  return !std::holds_alternative<Pick>(a.what) || a.client == b.client;
+  const bool is_own = std::holds_alternative<Pick>(a.what) ||
+                      std::holds_alternative<Hello>(a.what) ||
+                      std::holds_alternative<SetSize>(a.what);
+  return !is_own || a.client == b.client;
 }
 
 template <class T>

@@ -38,7 +38,8 @@ const Names<LightChoice> kLights{{"studio", LightChoice::studio},
 const Names<EdgePointShader> kShaders{{"direct", EdgePointShader::direct},
                                       {"glossy", EdgePointShader::glossy},
                                       {"gi", EdgePointShader::gi}};
-const Names<FrameView::From> kViews{{"front", FrameView::From::front},
+const Names<FrameView::From> kViews{{"first", FrameView::From::first},
+                                    {"front", FrameView::From::front},
                                     {"right", FrameView::From::right},
                                     {"top", FrameView::From::top},
                                     {"iso", FrameView::From::iso}};

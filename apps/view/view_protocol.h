@@ -45,7 +45,7 @@ struct SetCamera {
   Camera camera;
 };
 struct FrameView {
-  enum class From { here, front, right, top, iso } from = From::here;
+  enum class From { here, first, front, right, top, iso } from = From::here;
 };
 // What is empty stays as it is.
 struct SetRounding {

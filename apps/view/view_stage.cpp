@@ -126,11 +126,15 @@ void check_object(const ViewModel& model, std::uint32_t id) {
       fmt::format("there is no object {}; the model has {}", id, model.scene.objects.size()));
 }
 
-void check_camera(const ViewModel& model, const Camera& camera) {
+std::vector<std::string> camera_problems(const ViewModel& model, const Camera& camera) {
   Scene seen;
   seen.image = model.scene.image;
   seen.camera = camera;
-  const std::vector<std::string> problems = validate_placement(seen);
+  return validate_placement(seen);
+}
+
+void check_camera(const ViewModel& model, const Camera& camera) {
+  const std::vector<std::string> problems = camera_problems(model, camera);
   if (!problems.empty()) {
     throw Error(Error::Kind::input, "", fmt::format("{}", fmt::join(problems, "\n")));
   }
@@ -141,16 +145,18 @@ struct Apply {
   const ViewModel& model;
   ViewEdits& edits;
 
-  void operator()(const Hello& m) const { edits.size = m.size; }
-  void operator()(const SetSize& m) const { edits.size = m.size; }
+  void operator()(const Hello& m) const { set_size(m.size); }
+  void operator()(const SetSize& m) const { set_size(m.size); }
   void operator()(const SetCamera& m) const {
     check_camera(model, m.camera);
     edits.camera = m.camera;
+    edits.framed.reset();
   }
   void operator()(const FrameView& m) const {
     const Camera camera = frame_view(model, edits, m.from);
     check_camera(model, camera);
     edits.camera = camera;
+    edits.framed = m.from;
   }
   void operator()(const SetRounding& m) const {
     RoundingSettings& rounding = edits.rounding;
@@ -205,6 +211,11 @@ struct Apply {
   void operator()(const SetQuality&) const {}
 
  private:
+  void set_size(PictureSize size) const {
+    if (edits.size == size) return;
+    edits.size = size;
+    fit_camera(model, edits);
+  }
   // The radius may be that of the object itself.
   void set_radius(ObjectEdit& object, Radius radius) const {
     object.rounding = edits.rounding;
@@ -252,6 +263,7 @@ ViewEdits carry_over(const ViewEdits& first_before, const ViewEdits& edits, View
     if (!(edited == before)) now = edited;
   };
   if (!is_same(edits.camera, first_before.camera)) out.camera = edits.camera;
+  out.framed = edits.framed;
   carry(first_before.rounding, edits.rounding, out.rounding);
   carry(first_before.lighting, edits.lighting, out.lighting);
   carry(first_before.strength, edits.strength, out.strength);
@@ -275,6 +287,10 @@ Camera frame_view(const ViewModel& model, const ViewEdits& edits, FrameView::Fro
   Scene visible = model.scene;
   visible.image.width_px = edits.size.width_px;
   visible.image.height_px = edits.size.height_px;
+  if (from == FrameView::From::first) {
+    stage_model(visible, model.stage);
+    return *visible.camera;
+  }
   visible.objects.clear();
   for (std::size_t i = 0; i < edits.objects.size(); ++i) {
     if (!edits.objects[i].visible) continue;
@@ -294,10 +310,17 @@ Camera frame_view(const ViewModel& model, const ViewEdits& edits, FrameView::Fro
       return frame_scene_from(visible, frame.east, frame.up, fov);
     case FrameView::From::top:
       return frame_scene_from(visible, frame.up, frame.north, fov);
+    case FrameView::From::first:
     case FrameView::From::iso:
       break;
   }
   return frame_scene(visible, fov);
+}
+
+void fit_camera(const ViewModel& model, ViewEdits& edits) {
+  if (!edits.framed) return;
+  const Camera camera = frame_view(model, edits, *edits.framed);
+  if (camera_problems(model, camera).empty()) edits.camera = camera;
 }
 
 StagedView stage_view(const ViewModel& model, const ViewEdits& edits,

@@ -44,6 +44,8 @@ struct ObjectEdit {
 struct ViewEdits {
   PictureSize size;
   Camera camera;
+  // The camera is still what this gives, and is again at another size; empty: it was set by hand.
+  std::optional<FrameView::From> framed = FrameView::From::first;
   RoundingSettings rounding;
   LightChoice lighting = LightChoice::file;
   double strength = 1, rotation_deg = 0;  // of the lights
@@ -67,10 +69,13 @@ ViewEdits first_edits(const ViewModel& model);
 void apply_message(const ViewModel& model, const MessageKind& message, ViewEdits& edits);
 
 // The edits of a model whose file has been read again: what was changed by hand stays, all else is as the file is now.
+// Of a framed view the camera is fit_camera()'s to find.
 ViewEdits carry_over(const ViewEdits& first_before, const ViewEdits& edits, ViewEdits first_now);
 
-// The camera that shows all visible objects.
+// The camera that shows all visible objects; first: the model's own, or that shows all of it, as when it is opened.
 Camera frame_view(const ViewModel& model, const ViewEdits& edits, FrameView::From from);
+// A framed view in its picture's size. Where there is no room for that its camera stays.
+void fit_camera(const ViewModel& model, ViewEdits& edits);
 
 struct StagedView {
   Scene scene;

@@ -94,8 +94,41 @@ TEST(ViewProtocol, reads_what_an_object_message_says_and_leaves_the_rest) {
 TEST(ViewProtocol, keeps_the_sequence_number) {
   EXPECT_EQ(parse_message(R"({"type":"beam","seq":7})").seq, 7U);
   EXPECT_EQ(parse_message(R"({"type":"beam"})").seq, std::nullopt);
-  EXPECT_EQ(find_seq(R"({"type":"nothing","seq":12})"), 12U);
-  EXPECT_EQ(find_seq("]"), std::nullopt);
+}
+
+TEST(ViewProtocol, tells_what_can_be_seen_of_a_message_that_is_wrong) {
+  const MessageHead head = find_head(R"({"type":"rounding","seq":12,"radius":-1})");
+  EXPECT_EQ(head.seq, 12U);
+  EXPECT_EQ(head.type, "rounding");
+  EXPECT_EQ(find_head(R"({"type":"nothing","seq":12})").seq, 12U);
+  EXPECT_EQ(find_head(R"({"type":"nothing","seq":12})").type, "");
+  EXPECT_EQ(find_head(R"({"type":"light","seq":-1})").type, "light");
+  EXPECT_EQ(find_head("]").seq, std::nullopt);
+}
+
+TEST(ViewProtocol, knows_the_type_of_every_message) {
+  for (const char* text : {
+           R"({"type":"hello","size":[640,360]})",
+           R"({"type":"ack","frame":1})",
+           R"({"type":"size","size":[640,360]})",
+           R"({"type":"camera","position":[1,2,3],"target":[0,0,1],"up":[0,1,0],"fov":35})",
+           R"({"type":"frame_view","direction":"first"})",
+           R"({"type":"rounding","radius":0.5})",
+           R"({"type":"object","id":0})",
+           R"({"type":"isolate","id":3})",
+           R"({"type":"light","strength":2})",
+           R"({"type":"material","name":null})",
+           R"({"type":"ground","on":false})",
+           R"({"type":"shader","name":"direct"})",
+           R"({"type":"compare","method":null})",
+           R"({"type":"overlay","on":true})",
+           R"({"type":"pick","at":[10.5,20]})",
+           R"({"type":"beam"})",
+           R"({"type":"beam_stop"})",
+           R"({"type":"quality","moving":50,"still":95})",
+       }) {
+    EXPECT_EQ(type_of(parse_message(text).what), find_head(text).type) << text;
+  }
 }
 
 TEST(ViewProtocol, says_what_is_wrong_and_what_is_expected) {

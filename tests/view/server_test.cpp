@@ -422,6 +422,57 @@ TEST_F(ViewServerTest, a_change_that_cannot_be_made_is_an_error_and_changes_noth
   read_until_converged(*socket);
 }
 
+TEST_F(ViewServerTest, errors_say_what_they_are_about) {
+  start();
+  auto socket = look();
+  EXPECT_EQ(socket->read_text("scene")["radius_limit"], 0.5);
+  read_until_converged(*socket);
+  const auto about = [&](const json& message) {
+    socket->send(message);
+    return socket->read_text("error")["about"];
+  };
+  EXPECT_EQ(about({{"type", "rounding"}, {"seq", 1}, {"radius", 0.7}}), "rounding");
+  EXPECT_EQ(about({{"type", "rounding"}, {"seq", 2}, {"radius", -1}}), "rounding");
+  EXPECT_EQ(socket->read_text("scene")["rounding"]["radius"], 0.1);
+  EXPECT_EQ(about({{"type", "object"}, {"seq", 3}, {"id", 0}, {"radius", 0.8}}), "object");
+  EXPECT_EQ(about({{"type", "material"}, {"seq", 4}, {"name", "cheese"}}), "material");
+  EXPECT_TRUE(about({{"type", "cheese"}}).is_null());
+}
+
+TEST_F(ViewServerTest, frames_the_whole_model_for_the_size_of_the_page) {
+  start();
+  auto socket = look();
+  const json wide = socket->read_text("scene")["camera"];
+  socket->send({{"type", "size"}, {"seq", 1}, {"size", {100, 300}}});
+  json scene;
+  do scene = socket->read_text("scene");
+  while (scene["seq"] != 1);
+  const auto distance = [](const json& camera) {
+    const auto at = [&](const char* key, int axis) { return camera[key][axis].get<double>(); };
+    return std::hypot(at("position", 0) - at("target", 0), at("position", 1) - at("target", 1));
+  };
+  EXPECT_GT(distance(scene["camera"]), 1.5 * distance(wide));
+  socket->send({{"type", "frame_view"}, {"seq", 2}, {"direction", "top"}});
+  EXPECT_TRUE(read_until_seq(*socket, 2).flags & 1U);
+}
+
+TEST_F(ViewServerTest, the_size_goes_to_who_is_left) {
+  start();
+  auto first = look(), second = look();
+  first->send({{"type", "size"}, {"seq", 1}, {"size", {200, 100}}});
+  second->send({{"type", "size"}, {"seq", 1}, {"size", {120, 80}}});
+  {
+    auto last = look();
+    last->send({{"type", "size"}, {"seq", 1}, {"size", {320, 200}}});
+    while (first->read_and_acknowledge().width != 320) {
+    }
+    first->send({{"type", "overlay"}, {"seq", 2}, {"on", true}});
+    read_until_seq(*first, 2);
+  }
+  while (first->read_and_acknowledge().width != 200) {
+  }
+}
+
 TEST_F(ViewServerTest, compares_roundings_along_a_line) {
   start();
   auto socket = look();

@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <atomic>
+#include <cmath>
+#include <initializer_list>
 #include <memory>
 
 #include "arris/error.h"
@@ -162,6 +164,119 @@ TEST(ViewStage, framed_views_show_all_from_where_they_are_asked_for) {
   EXPECT_NEAR(length(direction(FrameView::From::right) - Vec3d(-1, 0, 0)), 0, 1e-9);
   const Vec3d here = normalize(edits.camera.target - edits.camera.position);
   EXPECT_NEAR(length(direction(FrameView::From::here) - here), 0, 1e-6);
+}
+
+// Where the corners of what is visible lie, from the middle, in halves of the picture; the largest of each axis.
+Vec2d reach_of(const ViewModel& model, const ViewEdits& edits) {
+  const Camera& c = edits.camera;
+  const Vec3d forward = normalize(c.target - c.position);
+  const Vec3d right = normalize(cross(forward, c.up));
+  const Vec3d up = cross(right, forward);
+  const double half = std::tan(radians(c.fov_deg) / 2);
+  const double aspect = double(edits.size.width_px) / edits.size.height_px;
+  Vec2d reach{0, 0};
+  for (std::size_t i = 0; i < edits.objects.size(); ++i) {
+    for (const Vec3f& p : model.scene.meshes[0].positions) {
+      const Vec3d at = transform_point(edits.objects[i].world_from_object, Vec3d(p)) - c.position;
+      const double depth = dot(at, forward) * half;
+      reach.x = std::max(reach.x, std::abs(dot(at, right)) / (depth * aspect));
+      reach.y = std::max(reach.y, std::abs(dot(at, up)) / depth);
+    }
+  }
+  return reach;
+}
+
+TEST(ViewStage, what_is_framed_is_whole_at_every_size_until_the_camera_is_moved) {
+  const ViewModel model = make_model(4);
+  ViewEdits edits = first_edits(model);
+  const auto expect_whole = [&] {
+    for (const PictureSize size : {PictureSize{390, 744}, {1280, 720}, {900, 100}}) {
+      apply_message(model, SetSize{size}, edits);
+      const Vec2d reach = reach_of(model, edits);
+      EXPECT_LT(std::max(reach.x, reach.y), 1) << size.width_px;
+      EXPECT_GT(std::max(reach.x, reach.y), 0.7) << size.width_px;
+    }
+  };
+  expect_whole();
+  for (const auto from : {FrameView::From::top, FrameView::From::front, FrameView::From::here}) {
+    apply_message(model, FrameView{from}, edits);
+    expect_whole();
+  }
+  apply_message(model, SetCamera{edits.camera}, edits);
+  const Camera before = edits.camera;
+  apply_message(model, SetSize{{390, 744}}, edits);
+  EXPECT_EQ(before.position, edits.camera.position);
+  apply_message(model, FrameView{FrameView::From::first}, edits);
+  const Camera first = edits.camera;
+  EXPECT_NE(before.position, first.position);
+  EXPECT_EQ(normalize(first.target - first.position),
+            normalize(frame_view(model, edits, FrameView::From::iso).target - first.position));
+  expect_whole();
+}
+
+TEST(ViewStage, the_files_camera_is_the_first_at_every_size) {
+  ViewModel model = make_model(1);
+  model.scene.camera = Camera{{0, -20, 1}, {0, 0, 1}, {0, 0, 1}, 20};
+  ViewEdits edits = first_edits(model);
+  apply_message(model, SetSize{{100, 700}}, edits);
+  EXPECT_EQ(edits.camera.position, Vec3d(0, -20, 1));
+  apply_message(model, FrameView{FrameView::From::top}, edits);
+  apply_message(model, FrameView{FrameView::From::first}, edits);
+  EXPECT_EQ(edits.camera.position, Vec3d(0, -20, 1));
+  EXPECT_EQ(edits.camera.fov_deg, 20);
+}
+
+TEST(ViewStage, a_framed_view_is_framed_again_when_the_file_has_grown) {
+  const ViewModel before = make_model(1), after = make_model(5);
+  ViewEdits edits = first_edits(before);
+  apply_message(before, SetSize{{300, 500}}, edits);
+  ViewEdits carried = carry_over(first_edits(before), edits, first_edits(after));
+  fit_camera(after, carried);
+  EXPECT_LT(reach_of(after, carried).x, 1);
+  apply_message(before, SetCamera{edits.camera}, edits);
+  carried = carry_over(first_edits(before), edits, first_edits(after));
+  fit_camera(after, carried);
+  EXPECT_EQ(carried.camera.position, edits.camera.position);
+}
+
+TEST(ViewStage, the_radius_limit_is_the_least_inradius_of_what_the_scenes_radius_rounds) {
+  ViewModel model = make_model(3);
+  model.scene.objects[1].world_from_object.linear = Mat3d{{2, 0, 0}, {0, 2, 0}, {0, 0, 2}};
+  ViewEdits edits = first_edits(model);
+  const auto inradii = first_inradii(model);
+  ASSERT_EQ(inradii.size(), 3U);
+  EXPECT_NEAR(*radius_limit(model, edits, inradii), 0.5, 1e-9);
+  edits.objects[0].visible = false;
+  SetObject own;
+  own.id = 2;
+  own.radius = Radius(0.1);
+  apply_message(model, own, edits);
+  EXPECT_NEAR(*radius_limit(model, edits, inradii), 1, 1e-9);
+  edits.objects[1].world_from_object.linear = Mat3d{{4, 0, 0}, {0, 4, 0}, {0, 0, 4}};
+  EXPECT_NEAR(*radius_limit(model, edits, inradii), 2, 1e-9);
+  edits.objects[1].visible = false;
+  EXPECT_FALSE(radius_limit(model, edits, inradii));
+}
+
+TEST(ViewStage, tells_which_message_made_a_difference) {
+  const ViewModel model = make_model(2);
+  const ViewEdits first = first_edits(model);
+  const auto change = [&](const MessageKind& message) {
+    ViewEdits edits = first;
+    apply_message(model, message, edits);
+    return std::string(find_change(first, edits));
+  };
+  SetRounding rounding;
+  rounding.radius = 0.5;
+  SetObject object;
+  object.radius = Radius(0.5);
+  for (const MessageKind& message : std::initializer_list<MessageKind>{
+           rounding, object, SetSize{{100, 100}}, Compare{RoundMethod::none, 0.5},
+           SetShader{EdgePointShader::direct}, SetGround{false}, SetMaterial{"brass"},
+           SetLight{LightChoice::sky, {}, {}}}) {
+    EXPECT_EQ(change(message), type_of(message));
+  }
+  EXPECT_EQ(change(SetOverlay{true}), "");
 }
 
 TEST(ViewStage, the_ground_of_a_scene_is_where_it_says_until_it_is_turned_off) {

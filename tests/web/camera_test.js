@@ -1,7 +1,7 @@
 // camera_test.js — the camera's maths, without a browser.
 import assert from "node:assert/strict";
 import test from "node:test";
-import { Camera, showsBox, upAxis } from "../../web/camera.js";
+import { Camera, upAxis } from "../../web/camera.js";
 import { add, cross, dot, length, normalize, scale, subtract } from "../../web/vector.js";
 
 function near(actual, expected, tolerance = 1e-9) {
@@ -163,18 +163,6 @@ test("frames a sphere in wide and tall pictures", () => {
       assert.ok(Math.abs(seen[0]) < aspect / 2 && Math.abs(seen[1]) < 0.5, `${aspect}: ${seen}`);
     }
   }
-});
-
-test("tells whether a box is whole in a picture", () => {
-  const camera = threeQuarter();
-  const box = { lower: [-1, -1, -0.5], upper: [1, 1, 1] };
-  camera.frameSphere([0, 0, 0.25], 1.7, 1);
-  assert.ok(showsBox(camera, box, 1));
-  assert.ok(!showsBox(camera, box, 0.4));
-  camera.zoom(2);
-  assert.ok(!showsBox(camera, box, 1));
-  camera.zoom(100);
-  assert.ok(!showsBox(camera, box, 1));
 });
 
 test("leaves out what lies behind the eye", () => {
