@@ -9,8 +9,16 @@ async function problemOf(answer) {
   return end < 0 ? new Error(text) : new Error(text.slice(0, end), { cause: text.slice(end + 2) });
 }
 
+/** What is said of a picture that was saved as it is in this frame; `wanted`: samples of one that is done. */
+export function savedPicture(name, header, wanted) {
+  if (!header || header.converged) return [`Saved ${name}`];
+  const samples = wanted ? `, ${header.samples} of ${wanted} samples` : "";
+  return [`Saved ${name}: a draft${samples}`, "Wait for the tick for a finished one."];
+}
+
 export class Files {
   #session;
+  #frame = null;
   #connection;
   #messages;
 
@@ -29,8 +37,15 @@ export class Files {
     this.#connectBeam();
   }
 
+  /** The header of the frame that is drawn. */
+  setFrame(header) {
+    this.#frame = header;
+  }
+
   savePicture() {
-    return this.#save("/picture.png", "png", "picture");
+    const header = this.#frame;
+    const said = (name) => savedPicture(name, header, this.#session.scene?.samples);
+    return this.#save("/picture.png", "png", "picture", said);
   }
 
   saveScene() {
@@ -38,7 +53,7 @@ export class Files {
   }
 
   /** Fetched rather than linked to, so that an error becomes a message instead of a file. */
-  async #save(path, extension, what) {
+  async #save(path, extension, what, said = (name) => [`Saved ${name}`]) {
     try {
       const answer = await fetch(this.#connection.url(path), { cache: "no-store" });
       if (!answer.ok) throw await problemOf(answer);
@@ -48,23 +63,24 @@ export class Files {
       link.download = `${stem || "arris"}.${extension}`;
       link.click();
       setTimeout(() => URL.revokeObjectURL(link.href), 10000);
-      this.#messages.info(`Saved the ${what} as ${link.download}`);
+      this.#messages.clear(path);
+      this.#messages.info(...said(link.download));
     } catch (error) {
       const remedy = error.cause ?? "Try again when the server answers.";
-      this.#messages.error(`The ${what} could not be saved: ${error.message}`, remedy);
+      this.#messages.error(`The ${what} could not be saved: ${error.message}`, remedy, path);
     }
   }
 
   #mayOpen() {
     if (this.#session.scene?.upload) return true;
-    this.#messages.error("This server does not take models", "Start it with: arris view FILE --allow-upload");
+    this.#messages.error("This server does not take models", "Start it with: arris view FILE --allow-upload", "open");
     return false;
   }
 
   async #open(files) {
     if (files.length === 0 || !this.#mayOpen()) return;
     if (files.length > 1) {
-      this.#messages.error("One file at a time", "Models of several files: put them into one .glb.");
+      this.#messages.error("One file at a time", "Models of several files: put them into one .glb.", "open");
       return;
     }
     const [file] = files;
@@ -73,9 +89,10 @@ export class Files {
       const url = `${this.#connection.url("/model")}&name=${encodeURIComponent(file.name)}`;
       const answer = await fetch(url, { method: "POST", body: file });
       if (!answer.ok) throw await problemOf(answer);
+      this.#messages.clear("open");
     } catch (error) {
       const remedy = error.cause ?? "The model shown before stays.";
-      this.#messages.error(`${file.name} was not opened: ${error.message}`, remedy);
+      this.#messages.error(`${file.name} was not opened: ${error.message}`, remedy, "open");
     } finally {
       opening.remove();
     }
@@ -125,6 +142,7 @@ export class Files {
       (state === "done" ? look : start).focus();
     };
     start.addEventListener("click", () => {
+      this.#messages.clear("beam");
       this.#session.send("beam");
       progress.value = 0;
       show("working");
@@ -136,7 +154,7 @@ export class Files {
       const isStopped = detail.stopped && !detail.ready;
       show(detail.error || isStopped ? null : detail.ready ? "done" : "working");
       if (isStopped) this.#messages.info("The beam picture was cancelled");
-      if (detail.error) this.#messages.error(`No beam picture: ${detail.error}`, detail.remedy);
+      if (detail.error) this.#messages.error(`No beam picture: ${detail.error}`, detail.remedy, "beam");
       if (detail.ready) this.#messages.info("The beam picture is done", "Open it under “Picture and file”.");
     });
     this.#connection.addEventListener("status", ({ detail }) => {

@@ -9,7 +9,8 @@ function isTaken(event) {
   if (target.matches("input[type=range], input[type=radio], [role=slider]")) {
     return key.startsWith("Arrow") || ["Home", "End", "PageUp", "PageDown", "+", "-", "="].includes(key);
   }
-  if (target.matches("button, summary, a, input")) return key === "Enter" || key === " ";
+  if (target.matches("button, summary, a")) return key === "Enter" || key === " ";
+  if (target.matches("input")) return key === " ";
   return false;
 }
 

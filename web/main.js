@@ -16,6 +16,7 @@ import { Stats } from "./stats.js";
 import { View } from "./view.js";
 
 const RESIZE_MS = 200;
+const HINT_MS = 20000;
 const KEY_ANGLE = Math.PI / 36;
 const FIRST_PICTURE = "The first picture is being made";
 
@@ -91,6 +92,7 @@ picture.addEventListener("drawn", ({ detail: header }) => {
   session.setShownSeq(header.seq);
   view.setShownSeq(header.seq);
   stats.setFrame(header, connection.takeLatency(header.seq));
+  files.setFrame(header);
   Object.assign(canvas.dataset, { frame: header.frame, seq: header.seq, converged: header.converged });
 });
 view.addEventListener("camera", drawMarks);
@@ -162,7 +164,7 @@ function setPreset(preset) {
   fillMouseHelp(byId("help-mouse").tBodies[0], preset);
 }
 
-// What the picture answers to, until it has been turned for the first time
+// What the picture answers to, until something has been tried
 
 function showHint() {
   if (remembered("hinted", "")) return;
@@ -170,8 +172,11 @@ function showHint() {
   const turn = settings.preset === "blender" ? "Drag with the middle button to turn" : "Drag to turn";
   byId("hint").textContent = isTouched
     ? "One finger turns, two zoom and shift"
-    : `${turn}, wheel to zoom, click to choose · H for all keys`;
+    : `${turn}, wheel to zoom, click to select · H for all keys`;
   byId("hint").hidden = false;
+  setTimeout(endHint, HINT_MS);
+  for (const trial of ["wheel", "touchstart"]) canvas.addEventListener(trial, endHint, { passive: true });
+  window.addEventListener("keydown", endHint);
 }
 
 function endHint() {
@@ -252,7 +257,7 @@ keys.add("L · Shift+L", "more, less light", {
   L: () => session.scene && panels.brighten(1.25),
   "Shift+L": () => session.scene && panels.brighten(0.8),
 });
-keys.add("F", "look at the chosen object", { F: () => view.lookAt(objects.chosen, picture.aspect) });
+keys.add("F", "look at the selected object", { F: () => view.lookAt(objects.chosen, picture.aspect) });
 keys.add("I", "isolate it, or show all", { I: () => objects.isolate() });
 keys.add("X", "hide or show it", { X: () => objects.hide() });
 keys.add("M", "move objects with the left button", { M: () => setMoving(!settings.moving) });
@@ -261,7 +266,7 @@ keys.add("Z", "figures", { Z: () => (byId("stats").hidden = !byId("stats").hidde
 keys.add("N", "panel", { N: () => togglePanel() });
 keys.add("H · ?", "this help", { H: () => byId("help").showModal(), "?": () => byId("help").showModal() });
 keys.add("F12 · Ctrl+S", "save the picture", { F12: () => files.savePicture(), "Ctrl+S": () => files.savePicture() });
-keys.add("Esc", "choose nothing", {
+keys.add("Esc", "select nothing", {
   Escape: () => {
     setMoving(false);
     objects.choose(null);
@@ -279,6 +284,16 @@ byId("views").addEventListener("click", ({ target }) => {
 });
 byId("save-button").addEventListener("click", () => files.savePicture());
 byId("help-button").addEventListener("click", () => byId("help").showModal());
+// Keys are the picture's again after the mouse was used elsewhere. Before the click acts: a dialog that it opens gives
+// the focus back to where it was.
+document.addEventListener(
+  "click",
+  ({ target, detail }) => {
+    const isByMouse = detail > 0 && !document.querySelector("dialog[open]");
+    if (isByMouse && target.closest?.("button, summary")) canvas.focus({ preventScroll: true });
+  },
+  true,
+);
 byId("help").addEventListener("keydown", (event) => {
   if (event.key.toLowerCase() === "h") byId("help").close();
 });

@@ -69,7 +69,7 @@ export class Move {
   step(right, down) {
     const object = this.#objects.chosen;
     if (!object) {
-      this.#messages.info("No object is chosen", "Click one in the picture or in the list.");
+      this.#messages.info("No object is selected", "Click one in the picture or in the list.");
       return;
     }
     const camera = this.#view.camera;

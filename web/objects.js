@@ -1,4 +1,4 @@
-// objects.js — the list of objects: choose, hide, isolate, look at, own radius.
+// objects.js — the list of objects: select, hide, isolate, look at, own radius.
 
 import { formatNumber } from "./panels.js";
 
@@ -7,10 +7,16 @@ const SHOWN = 200;
 
 const byId = (id) => document.getElementById(id);
 
+/** Whether an object is the only one that is shown, of several. */
+export function isIsolated(id, objects) {
+  const shown = objects.filter(({ visible }) => visible);
+  return objects.length > 1 && shown.length === 1 && shown[0].id === id;
+}
+
 export class Objects extends EventTarget {
   #session;
   #chosen = null;
-  #isolated = null;
+  #isTyping = false;
   #first = new Map();
 
   /** Dispatches "chosen"; `lookAt(object)` moves the camera. */
@@ -23,8 +29,13 @@ export class Objects extends EventTarget {
     byId("object-frame").addEventListener("click", () => lookAt(this.chosen));
     byId("object-isolate").addEventListener("click", () => this.isolate());
     byId("object-back").addEventListener("click", () => this.putBack());
+    byId("object-radius").addEventListener("input", () => (this.#isTyping = true));
+    byId("object-radius").addEventListener("blur", () => (this.#isTyping = false));
     byId("object-radius").addEventListener("change", ({ target }) => {
-      if (!target.checkValidity()) return;
+      const isZero = target.value !== "" && Number(target.value) === 0;
+      target.setCustomValidity(isZero ? "More than 0; the method “None” makes all edges sharp" : "");
+      this.#isTyping = !target.reportValidity();
+      if (this.#isTyping) return;
       this.#edit(this.#chosen, { radius: target.value === "" ? null : Number(target.value) });
     });
     byId("object-radius-clear").addEventListener("click", () => this.#edit(this.#chosen, { radius: null }));
@@ -37,6 +48,8 @@ export class Objects extends EventTarget {
 
   choose(id) {
     this.#chosen = id;
+    this.#isTyping = false;
+    byId("object-radius").setCustomValidity("");
     if (id !== null) byId("objects-section").open = true;
     this.#list();
     this.#details();
@@ -48,11 +61,10 @@ export class Objects extends EventTarget {
   /** Only the chosen one, or all again. */
   isolate() {
     if (!this.chosen) return;
-    const id = this.#isolated === this.#chosen ? null : this.#chosen;
+    const id = isIsolated(this.#chosen, this.#session.scene.objects) ? null : this.#chosen;
     this.#session.send("isolate", { id }, (scene) => {
       for (const object of scene.objects) object.visible = id === null || object.id === id;
     });
-    this.#isolated = id;
     this.#details();
   }
 
@@ -62,7 +74,6 @@ export class Objects extends EventTarget {
   }
 
   showAll() {
-    this.#isolated = null;
     this.#session.send("isolate", { id: null }, (scene) => scene.objects.forEach((object) => (object.visible = true)));
     this.#details();
   }
@@ -94,7 +105,6 @@ export class Objects extends EventTarget {
     if (!objects) return;
     if (isNew) {
       this.#first = new Map(objects.map(({ id, matrix, center }) => [id, { matrix, center }]));
-      this.#isolated = null;
       byId("object-filter").hidden = objects.length < 12;
       byId("object-filter").value = "";
       if (!this.chosen) this.#chosen = null;
@@ -159,8 +169,9 @@ export class Objects extends EventTarget {
     byId("object-facts").textContent = facts.join(", ");
     const radius = byId("object-radius");
     const own = typeof object.radius === "number" ? formatNumber(object.radius) : "";
-    if (document.activeElement !== radius) radius.value = own;
+    // What was refused is replaced by what holds, also while the field has the focus.
+    if (!this.#isTyping) radius.value = own;
     radius.placeholder = typeof object.radius === "string" ? object.radius : "as all";
-    byId("object-isolate").setAttribute("aria-pressed", String(this.#isolated === object.id));
+    byId("object-isolate").setAttribute("aria-pressed", String(isIsolated(object.id, this.#session.scene.objects)));
   }
 }

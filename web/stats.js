@@ -27,11 +27,20 @@ export class Stats {
     this.#isMoving = header.moving;
     if (header.moving) set("stat-seconds", formatSeconds(0));
     if (!header.converged) this.#isDone = false;
-    if (latency === null) return;
+    if (latency === null) {
+      if (!header.moving) this.#forgetLatency();
+      return;
+    }
     // Single frames jump about more than can be read.
     this.#latency = this.#latency === null ? latency : 0.7 * this.#latency + 0.3 * latency;
     const inServer = `${Math.round(header.serverMs)} ms in the server`;
     set("stat-latency", `${Math.round(this.#latency)} ms`, `from input to picture; ${inServer}`);
+  }
+
+  /** Nothing moves: there is no input whose picture would be late. */
+  #forgetLatency() {
+    this.#latency = null;
+    set("stat-latency", "–", "from input to picture; nothing moves");
   }
 
   setState(state) {

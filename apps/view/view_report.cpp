@@ -70,6 +70,7 @@ json object_json(const ViewModel& model, const ViewEdits& edits, std::size_t i,
   json out{{"id", i},
            {"name", object.name},
            {"triangles", object.csg ? 0 : model.scene.meshes[object.mesh.index].triangles.size()},
+           {"csg", object.csg.has_value()},
            {"visible", edit.visible},
            {"radius", nullptr},
            {"matrix", to_json(edit.world_from_object)}};
@@ -113,6 +114,7 @@ std::string scene_message(const ShownView& view, const ViewEdits& edits, bool up
            {"compare", nullptr},
            {"overlay", edits.overlay},
            {"upload", upload},
+           {"samples", model.scene.image.samples_per_pixel},
            {"objects", std::move(objects)},
            {"size", to_json(edits.size)}};
   if (const auto limit = radius_limit(model, edits, view.inradii)) out["radius_limit"] = *limit;

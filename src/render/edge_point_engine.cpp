@@ -526,7 +526,8 @@ Image EdgePointEngine::Impl::classes_picture() const {
     const bool has_point = !image.points[i].is_none();
     const float bright = has_point ? 1.0F : 0.4F, dim = has_point ? 0.15F : 0.0F;
     out.values[3 * i] = code.is_complex() ? bright : dim;
-    out.values[3 * i + 1] = dim;
+    // Blue alone is dark: with some green it is seen on dark parts, too.
+    out.values[3 * i + 1] = code.is_simple() ? 0.45F * bright : dim;
     out.values[3 * i + 2] = code.is_simple() ? bright : dim;
   }
   return out;

@@ -2,9 +2,12 @@
 import assert from "node:assert/strict";
 import test from "node:test";
 import { parseHeader, retryDelay } from "../../web/connection.js";
+import { Errors } from "../../web/errors.js";
+import { savedPicture } from "../../web/files.js";
 import { clickAction, dragAction } from "../../web/input.js";
 import { keyName } from "../../web/keys.js";
-import { formatNumber, logScale, parseRadius, radiusScale, usedRadius } from "../../web/panels.js";
+import { isIsolated } from "../../web/objects.js";
+import { formatNumber, logScale, parseRadius, radiusChange, radiusScale, usedRadius } from "../../web/panels.js";
 import { fitInto, hasShape, pictureSize } from "../../web/picture.js";
 import { Session } from "../../web/session.js";
 
@@ -101,6 +104,41 @@ test("the radius slider's range goes with the model's size", () => {
   assert.ok(Number.isFinite(radiusScale({ lower: [0, 0, 0], upper: [0, 0, 0] }).fromSlider(3)));
 });
 
+test("the radius slider ends just below what is possible, where that is known", () => {
+  const bounds = { lower: [0, 0, 0], upper: [1, 1, 1] };
+  for (const limit of [0.5, 0.123456, 1e-4, 3]) {
+    const { fromSlider } = radiusScale(bounds, limit);
+    assert.ok(fromSlider(1000) < limit && fromSlider(1000) > 0.97 * limit, `${limit}: ${fromSlider(1000)}`);
+    assert.ok(fromSlider(0) < limit / 50);
+  }
+  assert.equal(radiusScale(bounds, null).fromSlider(1000), radiusScale(bounds).fromSlider(1000));
+});
+
+test("radius 0 makes edges sharp, and another one rounds sharp ones", () => {
+  const change = (radius, method, compared = null) =>
+    radiusChange(radius, { rounding: { method }, compare: compared && { method: compared } });
+  assert.deepEqual(change(0, "exact"), { method: "none" });
+  assert.deepEqual(change("0%", "shader"), { method: "none" });
+  assert.deepEqual(change(0.5, "shader"), { radius: 0.5 });
+  assert.deepEqual(change("8%", "none"), { radius: "8%", method: "exact" });
+  assert.deepEqual(change(0.5, "none", "exact"), { radius: 0.5 });
+});
+
+test("only the single visible one of several objects is isolated", () => {
+  const objects = (...visible) => visible.map((each, id) => ({ id, visible: each }));
+  assert.ok(isIsolated(1, objects(false, true, false)));
+  assert.ok(!isIsolated(0, objects(false, true, false)));
+  assert.ok(!isIsolated(1, objects(true, true, false)));
+  assert.ok(!isIsolated(0, objects(true)));
+});
+
+test("says of a saved picture whether it is a draft", () => {
+  assert.deepEqual(savedPicture("a.png", { samples: 64, converged: true }, 64), ["Saved a.png"]);
+  const [text, remedy] = savedPicture("a.png", { samples: 0, converged: false }, 64);
+  assert.equal(text, "Saved a.png: a draft, 0 of 64 samples");
+  assert.match(remedy, /tick/);
+});
+
 test("writes numbers with as few digits as they need", () => {
   assert.equal(formatNumber(0.1 + 0.2), "0.3");
   assert.equal(formatNumber(1234.5678), "1235");
@@ -179,6 +217,41 @@ test("a change that was refused, or another model, gives the server the word aga
   drag(4);
   tell(0.5, 0, { name: "b" });
   assert.equal(radius(), 0.5);
+});
+
+test("an error goes when a later message of its kind has worked, or the server says so", (context) => {
+  context.mock.timers.enable({ apis: ["setTimeout"] });
+  const { connection, session, tell, drag } = openSession();
+  const shown = new Map();
+  const messages = {
+    error: (text, remedy, about = "") => shown.set(about, text),
+    clear: (about) => (about ? shown.delete(about) : shown.clear()),
+  };
+  new Errors({ connection, session, messages, refused: (seq) => session.setRefused(seq) });
+  const fail = (about, seq, text = "no") => connection.tell("error", { about, seq, text });
+  tell(1, 0);
+  const first = drag(5);
+  fail("rounding", first, "5 is too large");
+  tell(1, first);
+  assert.equal(shown.get("rounding"), "5 is too large");
+  const second = drag(6);
+  fail("rounding", second, "6 is too large");
+  assert.equal(shown.size, 1);
+  const light = session.send("light", { strength: 2 });
+  tell(1, light);
+  assert.equal(shown.get("rounding"), "6 is too large", "light has nothing to do with it");
+  const third = drag(0.5);
+  tell(1, light);
+  assert.equal(shown.size, 1, "not there yet");
+  tell(0.5, third);
+  assert.equal(shown.size, 0);
+
+  fail("file", undefined, "deleted");
+  fail("rounding", third);
+  connection.tell("error", { text: "", about: "file" });
+  assert.deepEqual([...shown.keys()], ["rounding"]);
+  connection.tell("error", { text: "" });
+  assert.equal(shown.size, 0);
 });
 
 test("scenes of a server that does not number them are judged by the frames", (context) => {

@@ -107,7 +107,7 @@ pageTest("a split view differs left and right of its line", {}, async ({ page, t
   assert.equal(await page.locator("#split").getAttribute("aria-valuenow"), "100");
 });
 
-pageTest("click chooses an object, and dragging with Alt moves it", {}, async ({ page, traffic }) => {
+pageTest("click selects an object, and dragging with Alt moves it", {}, async ({ page, traffic }) => {
   await page.keyboard.press("7");
   const isTop = ({ type, direction }) => type === "frame_view" && direction === "top";
   await viewer.until("the view from above", () => traffic.sent.some(isTop));
@@ -126,7 +126,7 @@ pageTest("click chooses an object, and dragging with Alt moves it", {}, async ({
   const perUnit = height / (2 * depth * Math.tan((camera.fov * Math.PI) / 360));
   const cube = [left - 6.75 * perUnit, top + 6.75 * perUnit];
   await page.mouse.click(...cube);
-  await viewer.until("the cube is chosen", async () => (await page.locator("#object-name").textContent()) === "cube");
+  await viewer.until("the cube is selected", async () => (await page.locator("#object-name").textContent()) === "cube");
   await page.locator("#object-details").waitFor();
   await viewer.screenshot(page, "chosen");
 
@@ -296,6 +296,48 @@ pageTest("every control has a name", {}, async ({ page }) => {
   assert.deepEqual(unnamed, []);
 });
 
+pageTest("Enter is the first view after a click on a button, and the button after the tabulator", {}, async (opened) => {
+  const { page, traffic } = opened;
+  const directions = () => sentOf(traffic, "frame_view").map(({ direction }) => direction);
+  const top = page.locator("[data-view=top]");
+  await top.click();
+  await viewer.until("the view from above", () => directions().at(-1) === "top");
+  await page.keyboard.press("Enter");
+  await viewer.until("the first view", () => directions().at(-1) === "first");
+  await top.focus();
+  await page.keyboard.press("Enter");
+  await viewer.until("the button", () => directions().at(-1) === "top");
+  await page.locator("#help-button").click();
+  await page.getByRole("button", { name: "Close" }).click();
+  await page.keyboard.press("Enter");
+  await viewer.until("the first view again", () => directions().at(-1) === "first");
+});
+
+pageTest("an error goes when a value that fits was given", {}, async ({ page, traffic }) => {
+  const enter = async (radius) => {
+    await page.locator("#radius").fill(radius);
+    await page.locator("#radius").press("Enter");
+  };
+  const errors = page.locator(".message.error");
+  await enter("999");
+  await errors.filter({ hasText: "999" }).waitFor();
+  await enter("998");
+  await errors.filter({ hasText: "998" }).waitFor();
+  assert.equal(await errors.count(), 1);
+  await enter("0.5");
+  await errors.waitFor({ state: "detached" });
+  await enter("0");
+  await viewer.until("sharp edges", () => scenes(traffic).at(-1).rounding.method === "none");
+  await viewer.until("None", () => page.locator("#method input[value=none]").isChecked());
+  const box = await page.locator("#radius-slider").boundingBox();
+  await page.mouse.click(box.x + box.width - 2, box.y + box.height / 2);
+  await viewer.until("rounded again", () => scenes(traffic).at(-1).rounding.method === "exact");
+  await viewer.shown(page, traffic);
+  const { rounding, radius_limit: limit } = scenes(traffic).at(-1);
+  assert.ok(rounding.radius < limit && rounding.radius > 0.9 * limit, `${rounding.radius} of ${limit}`);
+  assert.equal(await errors.count(), 0);
+});
+
 pageTest("the overlay says what its colours mean", {}, async ({ page }) => {
   await page.locator("#hint", { hasText: "Drag to turn" }).waitFor();
   assert.ok(await page.locator("#legend").isHidden());
@@ -354,7 +396,11 @@ pageTest("a phone shows all without overflow, and fingers turn the model", phone
     }));
   assert.deepEqual(await overflow(), { page: 0, panel: 0 });
   assert.ok(await page.locator("#radius-slider").isVisible());
-  await viewer.until("the model fitted into the narrow picture", () => sentOf(traffic, "frame_view").length > 0);
+  const away = ({ camera: { position, target } }) => Math.hypot(...position.map((x, at) => x - target[at]));
+  await viewer.until("the model fitted into the narrow picture", () => {
+    const [first, ...later] = scenes(traffic);
+    return later.length > 0 && later.at(-1).size[0] < later.at(-1).size[1] && away(later.at(-1)) > 1.3 * away(first);
+  });
   await viewer.settled(page, traffic);
   await viewer.screenshot(page, "phone");
   await page.locator("#sheet-button").tap();
