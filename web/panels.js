@@ -93,6 +93,7 @@ export class Panels {
   #session;
   #show = {};
   #radiusScale = logScale(1e-3, 1);
+  #isTyping = false;
 
   constructor(session) {
     this.#session = session;
@@ -107,8 +108,15 @@ export class Panels {
     const field = byId("radius");
     const setRadius = (radius) => this.#session.scene && round(radiusChange(radius, this.#session.scene));
     slider.addEventListener("input", () => setRadius(this.#radiusScale.fromSlider(Number(slider.value))));
+    field.addEventListener("input", () => (this.#isTyping = true));
+    field.addEventListener("blur", () => {
+      this.#isTyping = false;
+      field.setCustomValidity("");
+      this.#update();
+    });
     field.addEventListener("change", () => {
       const radius = parseRadius(field.value);
+      this.#isTyping = radius === undefined;
       field.setCustomValidity(radius === undefined ? "A length as 0.5, or in percent of what fits as 8%" : "");
       if (field.reportValidity()) setRadius(radius);
     });
@@ -184,7 +192,7 @@ export class Panels {
     const text = radius === "auto" && used !== null ? formatNumber(used, 3) : formatRadius(radius);
     slider.setAttribute("aria-valuetext", text);
     const field = byId("radius");
-    if (document.activeElement !== field || field.validity.valid) field.value = text;
+    if (!this.#isTyping) field.value = text;
     byId("radius-auto").setAttribute("aria-pressed", String(radius === "auto"));
     this.#show.method(rounding.method);
     this.#show.edges(rounding.edges);
