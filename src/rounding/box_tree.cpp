@@ -22,6 +22,21 @@ bool BoxTree::reaches(const Node& node, const SlabBounds& slab) {
   return middle + half >= slab.low && middle - half <= slab.high;
 }
 
+bool BoxTree::is_met(const Node& node, Vec3d origin, Vec3d direction, double begin, double end) {
+  for (int axis = 0; axis < 3; ++axis) {
+    const double half = node.half[axis] * (1 + 1e-12) + 1e-300;
+    const double from = node.middle[axis] - origin[axis];
+    if (direction[axis] == 0) {
+      if (std::abs(from) > half) return false;
+      continue;
+    }
+    const double t0 = (from - half) / direction[axis], t1 = (from + half) / direction[axis];
+    begin = std::max(begin, std::min(t0, t1));
+    end = std::min(end, std::max(t0, t1));
+  }
+  return begin <= end;
+}
+
 void BoxTree::build(std::span<Box> boxes) {
   Vec3d low(std::numeric_limits<double>::infinity());
   Vec3d high = -low;

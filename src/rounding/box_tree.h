@@ -44,6 +44,17 @@ class BoxTree {
     const Vec3d half = (high - low) * 0.5;
     for_each_where([&](const Node& node) { return reaches(node, middle, half); }, visit);
   }
+  // Visits the item of every box that the ray meets between two of its t, and some beside it. The visitor may bring
+  // the end nearer.
+  template <class Visit>
+  void for_each_along(Vec3d origin, Vec3d direction, double begin, double& end,
+                      Visit&& visit) const {
+    for_each_where([&](const Node& node) { return is_met(node, origin, direction, begin, end); },
+                   visit);
+  }
+  [[nodiscard]] std::size_t bytes() const {
+    return nodes_.size() * sizeof(Node) + items_.size() * sizeof(std::uint32_t);
+  }
 
  private:
   struct Node {
@@ -71,6 +82,7 @@ class BoxTree {
     }
     return true;
   }
+  static bool is_met(const Node& node, Vec3d origin, Vec3d direction, double begin, double end);
   void build(std::span<Box> boxes);
 
   std::vector<Node> nodes_;  // each before its children

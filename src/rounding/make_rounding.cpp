@@ -170,6 +170,7 @@ class RoundingMaker {
       ++cavities_;
       return;
     }
+    const bool creased = can_be_creased(s) && make_creased(s);
     const bool convex_solid = solid.convex && solid.closed;
     ShellNetwork network = builder.build(s, convex_solid);
     if (convex_solid && network.inverted) {
@@ -182,14 +183,75 @@ class RoundingMaker {
     }
     data_->report.rounded_edges += network.rounded_edges;
     data_->report.rounded_corners += network.rounded_corners;
-    shortened_ += network.shortened_edges;
-    narrow_ += network.narrow_edges;
-    const BandInput input{mesh_, welded_, regions_, triangle_begin_, triangles_, options_.radius};
-    append_bands(input, network, solid, solid.first_arc, bands_);
+    if (creased) {
+      // What the network leaves sharp is rounded all the same. It tells outlines where to look.
+      data_->report.rounded_edges += network.shortened_edges + network.narrow_edges;
+    } else {
+      shortened_ += network.shortened_edges;
+      narrow_ += network.narrow_edges;
+      const BandInput input{mesh_, welded_, regions_, triangle_begin_, triangles_, options_.radius};
+      append_bands(input, network, solid, solid.first_arc, bands_);
+    }
     append(network, solid);
     if (!keep_networks_) return;
     networks_.resize(data_->solids.size());
     networks_[s] = std::move(network);
+  }
+
+  // Not convex, and nothing about it is curved or open. Whoever wants networks gets local ones.
+  [[nodiscard]] bool can_be_creased(std::uint32_t s) const {
+    const Solid& solid = data_->solids[s];
+    if (keep_networks_ || solid.convex || !solid.closed || options_.edges == RoundEdges::concave) {
+      return false;
+    }
+    const Shell& shell = welded_.shells[s];
+    for (std::uint32_t i = 0; i < shell.triangle_count; ++i) {
+      const std::uint32_t t = welded_.triangles_by_shell[shell.first_triangle + i];
+      for (std::uint32_t h = 3 * t; h < 3 * t + 3; ++h) {
+        const EdgeKind kind = kinds_[h];
+        if (kind != EdgeKind::flat && kind != EdgeKind::convex && kind != EdgeKind::concave) {
+          return false;
+        }
+      }
+    }
+    return true;
+  }
+
+  // False: the radius takes away a whole edge.
+  bool make_creased(std::uint32_t s) {
+    Solid& solid = data_->solids[s];
+    const Shell& shell = welded_.shells[s];
+    std::vector<SurfaceTriangle> triangles;
+    for (std::uint32_t i = 0; i < shell.triangle_count; ++i) {
+      const std::uint32_t t = welded_.triangles_by_shell[shell.first_triangle + i];
+      if (regions_.region[t] == kNone) continue;
+      const Triangle& corners = welded_.triangles[t];
+      const auto at = [&](std::size_t k) {
+        return Vec3d(welded_.vertices[corners[k]]) - solid.center;
+      };
+      triangles.push_back({at(0), at(1), at(2), regions_.region[t]});
+    }
+    SolidSurface surface(std::move(triangles));
+    std::optional<std::vector<Crease>> creases = find_creases(
+        {welded_, regions_, kinds_, surface, solid.center, solid.size, options_.radius}, s);
+    if (!creases) return false;
+    for (std::uint32_t t = 0; t < mesh_.triangles.size(); ++t) {
+      if (welded_.shell[t] != s || regions_.region[t] == kNone) continue;
+      const Triangle& corners = mesh_.triangles[t];
+      const auto at = [&](std::size_t k) {
+        return Vec3d(mesh_.positions[corners[k]]) - solid.center;
+      };
+      const SurfaceTriangle triangle{at(0), at(1), at(2), regions_.region[t]};
+      const Vec3d normal = regions_.planes[triangle.region].normal;
+      for (const DepthAtCorners& d : find_depths(surface, triangle, normal, options_.radius)) {
+        bands_.push_back({t, {float(d.d0), float(d.d1 - d.d0), float(d.d2 - d.d0), kNone}});
+      }
+    }
+    solid.creased = std::uint32_t(data_->creased.size());
+    data_->creased.push_back(std::make_unique<const CreasedSolid>(
+        CreasedSolid{std::move(surface), CreasePipes(std::move(*creases), options_.radius),
+                     options_.radius, crease_tolerance(solid.size, options_.radius)}));
+    return true;
   }
 
   [[nodiscard]] std::span<const Plane> planes_of(const Solid& solid) const {
@@ -358,9 +420,10 @@ class RoundingMaker {
     std::uint64_t open = 0, other = 0;
     for (const Solid& solid : data_->solids) {
       report.convex_solids += solid.convex && solid.closed ? 1 : 0;
-      report.exact_solids += solid.exact ? 1 : 0;
+      const bool creased = solid.creased != kNone;
+      report.exact_solids += solid.exact || creased ? 1 : 0;
       open += solid.closed ? 0 : 1;
-      other += solid.closed && !solid.convex ? 1 : 0;
+      other += solid.closed && !solid.convex && !creased ? 1 : 0;
     }
     report.open_solids = open;
     report.bytes = bytes();
@@ -388,11 +451,17 @@ class RoundingMaker {
          "solids stay sharp: no ball of the radius fits into them");
   }
 
+  [[nodiscard]] std::uint64_t creased_bytes() const {
+    std::uint64_t sum = 0;
+    for (const auto& solid : data_->creased) sum += solid->bytes();
+    return sum;
+  }
+
   [[nodiscard]] std::uint64_t bytes() const {
     const auto of = [](const auto& v) { return v.size() * sizeof(v[0]); };
     return of(data_->band_begin) + of(data_->bands) + of(data_->face) + of(data_->faces) +
            of(data_->arcs) + of(data_->nodes) + of(data_->links) + of(data_->solids) +
-           (data_->tree ? data_->tree->bytes() : 0);
+           (data_->tree ? data_->tree->bytes() : 0) + creased_bytes();
   }
 
   const MeshView& mesh_;

@@ -207,6 +207,31 @@ std::optional<Place> detect_by_tree(const Rounding::Data& data, const Solid& sol
   return place_of(data, solid, deepest->arc, face_index, x);
 }
 
+// A solid of any shape. From inside the ray is looked at backwards.
+Resolution resolve_creased(const CreasedSolid& solid, const Ray& ray, const FaceHit& at,
+                           Vec3d normal, RayStart start, Vec3d center) {
+  Resolution out;
+  out.hit = {at.t, normal};
+  const bool entering = dot(normal, at.direction) < 0;
+  std::optional<PipeHit> met;
+  if (!entering && start == RayStart::outside) {
+    met = solid.cross_void(ray.origin - center, at.direction);
+    out.outcome = Resolution::Outcome::passed;
+    if (!met) return out;
+    out.hit.t = met->t / at.scale;
+  } else {
+    if (solid.is_kept(at.x, normal, at.face)) return out;
+    met = solid.cross_void(at.x, entering ? at.direction : -at.direction);
+    out.outcome = Resolution::Outcome::passed;
+    if (!met) return out;
+    out.hit.t = entering ? at.t + met->t / at.scale : at.t - met->t / at.scale;
+  }
+  out.outcome = Resolution::Outcome::moved;
+  out.hit.normal = met->normal;
+  out.hit.feature = met->at_end ? Feature::corner : Feature::edge;
+  return out;
+}
+
 // Where the walk ended.
 void finish(Resolution& out, const std::optional<WalkHit>& met, const FaceHit& at, bool entering) {
   if (!met) {
@@ -263,6 +288,10 @@ Resolution Rounding::resolve(const Ray& ray, const MeshHit& hit, RayStart start)
     }
   }
   const FaceHit at = locate(*data_, ray, hit);
+  if (solid.creased != kNone) {
+    return resolve_creased(*data_->creased[solid.creased], ray, at, Vec3d(face.normal), start,
+                           solid.center);
+  }
   out.hit = {at.t, Vec3d(face.normal)};
   if (!entering && solid.exact && start != RayStart::inside) {
     const Vec3d origin = ray.origin - solid.center;

@@ -13,6 +13,7 @@
 
 #include "arris/rounding.h"
 #include "edges/flat_regions.h"
+#include "rounding/creased_solid.h"
 #include "rounding/detection_tree.h"
 
 namespace arris {
@@ -21,7 +22,7 @@ namespace arris {
 // face away. 16 bytes, so that the four bands of a box's triangle fit a cache line.
 struct Band {
   float c0, cu, cv;
-  std::uint32_t arc;
+  std::uint32_t arc;  // kNone: of a creased solid
 
   [[nodiscard]] float depth(float u, float v) const { return c0 + cu * u + cv * v; }
 };
@@ -78,6 +79,7 @@ struct Solid {
   bool turned = false;       // the mesh's own winding points inward
   bool exact = false;    // closed, convex, every edge rounded: the surface is that of opening(P)
   bool rewired = false;  // E lost features of P: the arc nearest to a point must be searched for
+  std::uint32_t creased = kNone;  // index: rounded exactly though it isn't convex
 };
 
 struct Rounding::Data {
@@ -92,6 +94,7 @@ struct Rounding::Data {
       links;  // arcs at each node; a cap's last link is its wall face or kNone
   std::vector<Solid> solids;
   std::unique_ptr<const DetectionTree> tree;  // with Detection::kd_tree
+  std::vector<std::unique_ptr<const CreasedSolid>> creased;
   RoundingReport report;
 };
 

@@ -1,0 +1,51 @@
+// crease_curve.h — the curves on which balls of the radius touch a solid's surface from inside in two places
+// What       A segment, or an arc of an ellipse: where the offsets of two features of the surface meet. Faces are offset
+//            to planes, concave edges to cylinders of the radius, concave corners to spheres.
+//            | features | curve |
+//            |---|---|
+//            | face, face | line |
+//            | face, concave edge | ellipse in the offset plane; two lines if the edge is parallel to the face |
+//            | two concave edges that meet | two ellipses, in the planes through the corner with normals a − b and a + b |
+//            | face, concave corner | circle in the offset plane |
+// Legend     r radius; a, b unit directions of edges; u parameter: x(u) = center + a·u, or center + a·cos u + b·sin u
+#pragma once
+
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "arris/math.h"
+#include "edges/flat_regions.h"
+
+namespace arris {
+
+struct CreaseCurve {
+  Vec3d center, a, b;
+  bool is_line = true;  // else an ellipse with half axes a and b
+  double u0 = 0, u1 = 0;
+
+  [[nodiscard]] Vec3d at(double u) const;
+  [[nodiscard]] Vec3d derivative(double u) const;
+};
+
+// The roots within [u0, u1] of α + n·x(u).
+void add_crossings(const CreaseCurve& curve, Vec3d normal, double alpha,
+                   std::vector<double>& roots);
+
+// The nearest point of the curve to x, by its parameter.
+double nearest_parameter(const CreaseCurve& curve, Vec3d x);
+
+// Lines and ellipses have their whole extent, or [−extent, extent].
+std::optional<CreaseCurve> face_face_crease(const Plane& a, const Plane& b, double radius,
+                                            Vec3d near, double extent);
+struct EdgeLine {
+  Vec3d point, direction;  // unit
+};
+std::vector<CreaseCurve> face_edge_creases(const Plane& face, const EdgeLine& edge, double radius,
+                                           double extent);
+// Edges through one corner.
+std::vector<CreaseCurve> edge_edge_creases(Vec3d corner, Vec3d direction0, Vec3d direction1,
+                                           double radius);
+std::optional<CreaseCurve> face_corner_crease(const Plane& face, Vec3d corner, double radius);
+
+}  // namespace arris

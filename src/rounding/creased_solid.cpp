@@ -1,0 +1,114 @@
+#include "rounding/creased_solid.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace arris {
+namespace {
+
+// Relative to the radius: bounds that differ by less are one.
+constexpr double kSame = 1e-6;
+// More functions than these cost more than asking the surface.
+constexpr std::size_t kMostDepths = 8;
+
+// Bounds r minus the distance to a triangle from above, on the offset of another one.
+class DepthBound {
+ public:
+  DepthBound(const std::array<Vec3d, 3>& offset, const SurfaceTriangle& other, double radius)
+      : offset_(offset), other_(other), r_(radius) {}
+
+  // Nothing: it is nowhere near.
+  [[nodiscard]] std::optional<DepthAtCorners> find() const {
+    std::array<double, 3> distance{};
+    for (std::size_t i = 0; i < 3; ++i) distance[i] = distance_at(offset_[i]);
+    const auto farthest = std::size_t(std::ranges::max_element(distance) - distance.begin());
+    if (distance[farthest] <= r_) return DepthAtCorners{r_, r_, r_};
+    // Distances are convex: the tangent at any place bounds them from below. One from where the distance is r cuts
+    // off most; it lies on the way from the farthest corner to the nearest place.
+    const Vec3d near = nearest_place();
+    if (distance_at(near) >= r_) {
+      const DepthAtCorners bound = tangent(near);
+      if (std::max({bound.d0, bound.d1, bound.d2}) <= 0) return std::nullopt;
+      return bound;
+    }
+    double inside = 0, outside = 1;
+    for (int i = 0; i < 50; ++i) {
+      const double middle = 0.5 * (inside + outside);
+      const bool is_near = distance_at(near + (offset_[farthest] - near) * middle) < r_;
+      (is_near ? inside : outside) = middle;
+    }
+    return tangent(near + (offset_[farthest] - near) * outside);
+  }
+
+ private:
+  [[nodiscard]] double distance_at(Vec3d c) const {
+    return length(c - nearest_on_triangle(c, other_));
+  }
+
+  // By projecting back and forth between the two triangles.
+  [[nodiscard]] Vec3d nearest_place() const {
+    const SurfaceTriangle own{offset_[0], offset_[1], offset_[2], 0};
+    Vec3d c = (offset_[0] + offset_[1] + offset_[2]) / 3.0;
+    for (int i = 0; i < 100; ++i) c = nearest_on_triangle(nearest_on_triangle(c, other_), own);
+    return c;
+  }
+
+  [[nodiscard]] DepthAtCorners tangent(Vec3d at) const {
+    const Vec3d foot = nearest_on_triangle(at, other_);
+    const double distance = length(at - foot);
+    if (!(distance > 0)) return {r_, r_, r_};
+    const Vec3d gradient = (at - foot) / distance;
+    const auto depth = [&](Vec3d c) { return r_ - distance - dot(gradient, c - at); };
+    return {depth(offset_[0]), depth(offset_[1]), depth(offset_[2])};
+  }
+
+  const std::array<Vec3d, 3>& offset_;
+  const SurfaceTriangle& other_;
+  double r_;
+};
+
+bool is_same(const DepthAtCorners& a, const DepthAtCorners& b, double tolerance) {
+  return std::abs(a.d0 - b.d0) < tolerance && std::abs(a.d1 - b.d1) < tolerance &&
+         std::abs(a.d2 - b.d2) < tolerance;
+}
+
+}  // namespace
+
+bool CreasedSolid::is_kept(Vec3d x, Vec3d normal, std::uint32_t region) const {
+  return !surface.is_near(x - normal * radius, radius - tolerance, region);
+}
+
+std::optional<PipeHit> CreasedSolid::cross_void(Vec3d x, Vec3d direction) const {
+  const SolidSurface::Exit exit =
+      surface.first_exit(x, direction, 1, tolerance / length(direction));
+  return pipes.first_entry(x, direction, exit.t);
+}
+
+std::vector<DepthAtCorners> find_depths(const SolidSurface& surface,
+                                        const SurfaceTriangle& triangle, Vec3d normal,
+                                        double radius) {
+  const Vec3d down = normal * radius;
+  const std::array<Vec3d, 3> offset{triangle.p0 - down, triangle.p1 - down, triangle.p2 - down};
+  const Vec3d low = min(offset[0], min(offset[1], offset[2])) - Vec3d(radius);
+  const Vec3d high = max(offset[0], max(offset[1], offset[2])) + Vec3d(radius);
+  std::vector<DepthAtCorners> depths;
+  surface.for_each_near(low, high, [&](const SurfaceTriangle& other) {
+    if (other.region == triangle.region) return;
+    const auto depth = DepthBound(offset, other, radius).find();
+    if (!depth) return;
+    for (const DepthAtCorners& known : depths) {
+      if (is_same(known, *depth, kSame * radius)) return;
+    }
+    depths.push_back(*depth);
+  });
+  const auto is_everywhere = [](const DepthAtCorners& d) {
+    return std::min({d.d0, d.d1, d.d2}) > 0;
+  };
+  if (depths.size() > kMostDepths || std::ranges::any_of(depths, is_everywhere)) {
+    return {{radius, radius, radius}};
+  }
+  return depths;
+}
+
+}  // namespace arris

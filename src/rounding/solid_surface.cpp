@@ -1,0 +1,94 @@
+#include "rounding/solid_surface.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace arris {
+namespace {
+
+std::vector<Box> boxes_of(const std::vector<SurfaceTriangle>& triangles) {
+  std::vector<Box> boxes;
+  boxes.reserve(triangles.size());
+  for (std::uint32_t i = 0; i < triangles.size(); ++i) {
+    const auto& [p0, p1, p2, region] = triangles[i];
+    boxes.push_back({min(p0, min(p1, p2)), max(p0, max(p1, p2)), i});
+  }
+  return boxes;
+}
+
+// On which side of the line a→b the ray passes; the exact negative for b→a, so that no ray slips between triangles.
+double side_of(Vec3d origin, Vec3d direction, Vec3d a, Vec3d b) {
+  if (b.x < a.x || (b.x == a.x && (b.y < a.y || (b.y == a.y && b.z < a.z)))) {
+    return -dot(direction, cross(b - origin, a - origin));
+  }
+  return dot(direction, cross(a - origin, b - origin));
+}
+
+}  // namespace
+
+Vec3d nearest_on_segment(Vec3d x, Vec3d p0, Vec3d p1) {
+  const Vec3d along = p1 - p0;
+  const double squared = length_squared(along);
+  if (!(squared > 0)) return p0;
+  return p0 + along * std::clamp(dot(x - p0, along) / squared, 0.0, 1.0);
+}
+
+// C. Ericson, "Real-Time Collision Detection" (2005), §5.1.5.
+Vec3d nearest_on_triangle(Vec3d x, const SurfaceTriangle& t) {
+  const Vec3d ab = t.p1 - t.p0, ac = t.p2 - t.p0, ax = x - t.p0;
+  const double d1 = dot(ab, ax), d2 = dot(ac, ax);
+  if (d1 <= 0 && d2 <= 0) return t.p0;
+  const Vec3d bx = x - t.p1;
+  const double d3 = dot(ab, bx), d4 = dot(ac, bx);
+  if (d3 >= 0 && d4 <= d3) return t.p1;
+  const double vc = d1 * d4 - d3 * d2;
+  if (vc <= 0 && d1 >= 0 && d3 <= 0) return t.p0 + ab * (d1 / (d1 - d3));
+  const Vec3d cx = x - t.p2;
+  const double d5 = dot(ab, cx), d6 = dot(ac, cx);
+  if (d6 >= 0 && d5 <= d6) return t.p2;
+  const double vb = d5 * d2 - d1 * d6;
+  if (vb <= 0 && d2 >= 0 && d6 <= 0) return t.p0 + ac * (d2 / (d2 - d6));
+  const double va = d3 * d6 - d5 * d4;
+  if (va <= 0 && d4 - d3 >= 0 && d5 - d6 >= 0) {
+    return t.p1 + (t.p2 - t.p1) * ((d4 - d3) / ((d4 - d3) + (d5 - d6)));
+  }
+  const double sum = va + vb + vc;
+  return t.p0 + ab * (vb / sum) + ac * (vc / sum);
+}
+
+SolidSurface::SolidSurface(std::vector<SurfaceTriangle> triangles)
+    : triangles_(std::move(triangles)), tree_(boxes_of(triangles_)) {}
+
+bool SolidSurface::is_near(Vec3d x, double distance, std::uint32_t but_region) const {
+  bool found = false;
+  for_each_near(x - Vec3d(distance), x + Vec3d(distance), [&](const SurfaceTriangle& t) {
+    if (found || t.region == but_region) return;
+    found = length_squared(x - nearest_on_triangle(x, t)) < distance * distance;
+  });
+  return found;
+}
+
+SolidSurface::Exit SolidSurface::first_exit(Vec3d origin, Vec3d direction, double side,
+                                            double after) const {
+  Exit exit;
+  tree_.for_each_along(origin, direction, after, exit.t, [&](std::uint32_t i) {
+    const SurfaceTriangle& t = triangles_[i];
+    const Vec3d normal = cross(t.p1 - t.p0, t.p2 - t.p0) * side;
+    const double across = dot(normal, direction);
+    if (!(across > 0)) return;
+    const double w0 = side_of(origin, direction, t.p1, t.p2) * side;
+    const double w1 = side_of(origin, direction, t.p2, t.p0) * side;
+    const double w2 = side_of(origin, direction, t.p0, t.p1) * side;
+    if (w0 < 0 || w1 < 0 || w2 < 0) return;
+    const double at = dot(normal, t.p0 - origin) / across;
+    if (at > after && at < exit.t) exit = {at, t.region};
+  });
+  return exit;
+}
+
+std::size_t SolidSurface::bytes() const {
+  return triangles_.size() * sizeof(SurfaceTriangle) + tree_.bytes();
+}
+
+}  // namespace arris
