@@ -1,11 +1,12 @@
 // crease_curve.h — the curves on which balls of the radius touch a solid's surface from inside in two places
-// What       A segment, or an arc of an ellipse: where the offsets of two features of the surface meet. Faces are offset
-//            to planes, concave edges to cylinders of the radius, concave corners to spheres.
+// What       A segment, or an arc of an ellipse: where the offsets of two features of the surface meet. Faces are
+//            offset to planes, concave edges to cylinders of the radius, concave corners to spheres.
 //            | features | curve |
 //            |---|---|
 //            | face, face | line |
 //            | face, concave edge | ellipse in the offset plane; two lines if the edge is parallel to the face |
-//            | two concave edges that meet | two ellipses, in the planes through the corner with normals a − b and a + b |
+//            | two concave edges that meet | two ellipses, in the planes through the corner with normals a − b and a
+//            + b |
 //            | face, concave corner | circle in the offset plane |
 // Legend     r radius; a, b unit directions of edges; u parameter: x(u) = center + a·u, or center + a·cos u + b·sin u
 #pragma once

@@ -1,8 +1,8 @@
 // crease_pipes.h — balls of the radius along creases, as a ray meets them
 // What       The rounded surface that is not of the sharp solid is the boundary of the balls around all points of its
 //            creases. A ray that comes from where none of these balls are meets it where it first comes within r of a
-//            crease: of a segment by a quadratic equation, of an arc of an ellipse by steps of the distance that is left
-//            within the capsule around its chord.
+//            crease: of a segment by a quadratic equation, of an arc of an ellipse by steps of the distance that is
+//            left within the capsule around its chord.
 // In / Out   coordinates relative to the solid's centre; directions of any length
 // Source     for the steps: J. C. Hart, "Sphere Tracing" (1996)
 #pragma once

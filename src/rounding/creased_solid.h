@@ -1,7 +1,7 @@
 // creased_solid.h — a solid of any shape whose every edge is flat, convex or concave, rounded exactly
-// What       a hit on the mesh is kept iff the ball that touches the face there fits into the solid; a ray that is in the
-//            void between the sharp and the rounded surface meets a pipe (crease_pipes.h) before it leaves the sharp
-//            solid, or passes
+// What       a hit on the mesh is kept iff the ball that touches the face there fits into the solid; a ray that is in
+//            the void between the sharp and the rounded surface meets a pipe (crease_pipes.h) before it leaves the
+//            sharp solid, or passes
 // In / Out   coordinates relative to the solid's centre
 // Guarantee  tests/rounding/creased_test.cpp
 #pragma once

@@ -16,6 +16,10 @@
 namespace arris {
 namespace {
 
+// Each curve is cut at the whole outlines of its faces: of a plate with many holes that takes the square of their
+// number.
+constexpr std::uint32_t kMostCreasedTriangles = 1000;
+
 std::string format_length(double value) {
   char text[32];
   std::snprintf(text, sizeof text, "%.6g", value);
@@ -205,6 +209,7 @@ class RoundingMaker {
       return false;
     }
     const Shell& shell = welded_.shells[s];
+    if (shell.triangle_count > kMostCreasedTriangles) return false;
     for (std::uint32_t i = 0; i < shell.triangle_count; ++i) {
       const std::uint32_t t = welded_.triangles_by_shell[shell.first_triangle + i];
       for (std::uint32_t h = 3 * t; h < 3 * t + 3; ++h) {

@@ -83,8 +83,8 @@ TEST(EdgePoint, a_still_view_converges_to_the_path_traced_picture) {
 
 // As viewers have it: the threads that shade points stand aside.
 TEST(EdgePoint, a_still_view_is_traced_where_it_may_be) {
-  const auto scene = prepare_scene(make_scene(64));
-  const Image reference = path_picture(scene, 1024);
+  const auto scene = prepare_scene(make_scene(32));
+  const Image reference = path_picture(scene, 512);
   std::atomic<bool> hurry = true;
   EdgePointSettings settings;
   settings.trace_still_ms = 1e-6;
@@ -96,8 +96,8 @@ TEST(EdgePoint, a_still_view_is_traced_where_it_may_be) {
   hurry = false;
   const Image* picture = &engine.next_frame();
   EXPECT_GT(engine.stats().new_points, 0U);
-  while (engine.stats().still_paths < 512) picture = &engine.next_frame();
-  EXPECT_LT(rmse(*picture, reference), 1.5 * rmse(path_picture(scene, 512), reference));
+  while (engine.stats().still_paths < 256) picture = &engine.next_frame();
+  EXPECT_LT(rmse(*picture, reference), 1.5 * rmse(path_picture(scene, 256), reference));
   Camera camera = *scene_of(*scene).camera;
   camera.position.x += 0.1;
   engine.set_camera(camera);

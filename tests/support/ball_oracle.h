@@ -1,7 +1,7 @@
 // ball_oracle.h — rounding by its definition, for solids of any shape
 // What       P minus its opening is what no ball of the radius within P covers. margin(x) says by how much the largest
-//            ball that covers x and fits, of those of this radius, fits: the most that the distance to the surface can be
-//            within r of x, less r. Above 0, x is in opening(P); below, it is in the void.
+//            ball that covers x and fits, of those of this radius, fits: the most that the distance to the surface
+//            can be within r of x, less r. Above 0, x is in opening(P); below, it is in the void.
 // Limits     a search by chance: the margin may come out too small, by little
 // Cost       thousands of distances to all triangles
 #pragma once
