@@ -6,8 +6,9 @@
 // In / Out   the mesh's own space and units; rays in double precision, directions need not be unit
 // Guarantee  a closed convex solid whose every edge turns by min_angle or more is rounded exactly: its
 //            surface is that of the union of all balls of the radius that fit inside
-//            (tests/rounding/oracle_test.cpp). Const after building, safe from any number of threads.
-// Limits     concave edges stay sharp, whatever `edges` says; solids that aren't exact are rounded locally. A ray that
+//            (tests/rounding/oracle_test.cpp); so are the convex edges of closed solids of flat faces that are not
+//            convex (tests/rounding/creased_test.cpp). Const after building, safe from any number of threads.
+// Limits     concave edges stay sharp, whatever `edges` says; other solids are rounded locally. A ray that
 //            passes one of these and next leaves it by a kept face went through material: let the first hit stand.
 // Cost       building is close to linear in the triangles; a kept hit costs a few multiplications. Where the radius has
 //            eaten edges of a solid, a moved hit costs linear in those left.

@@ -5,8 +5,7 @@
 //            |---|---|
 //            | face, face | line |
 //            | face, concave edge | ellipse in the offset plane; two lines if the edge is parallel to the face |
-//            | two concave edges that meet | two ellipses, in the planes through the corner with normals a − b and a
-//            + b |
+//            | two concave edges that meet | two ellipses, in planes through the corner of normals a − b, a + b |
 //            | face, concave corner | circle in the offset plane |
 // Legend     r radius; a, b unit directions of edges; u parameter: x(u) = center + a·u, or center + a·cos u + b·sin u
 #pragma once
