@@ -1,8 +1,5 @@
 #include "render/shade_workers.h"
 
-#include <pthread.h>
-#include <sched.h>
-
 #include <algorithm>
 #include <chrono>
 #include <utility>
@@ -10,6 +7,7 @@
 #include "base/flush_denormals.h"
 
 namespace arris {
+
 ShadeWorkers::ShadeWorkers(int threads) {
   const int count = threads > 0 ? threads : std::max(1, int(std::thread::hardware_concurrency()));
   for (int i = 0; i < count; ++i) threads_.emplace_back([this] { run(); });
@@ -48,10 +46,6 @@ std::vector<ShadeWorkers::Batch> ShadeWorkers::collect() {
 
 void ShadeWorkers::run() {
   const FlushDenormals flush;
-  // A frame that is ready to be sent is more urgent than points: batch threads have the same share of the processors,
-  // but wake no later than others wish to. Where that can't be set all goes on as it was.
-  const sched_param batch{};
-  ::pthread_setschedparam(::pthread_self(), SCHED_BATCH, &batch);
   for (;;) {
     std::shared_ptr<const ShadePlan> plan;
     std::size_t first = 0;
