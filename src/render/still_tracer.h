@@ -1,7 +1,7 @@
 // still_tracer.h — a view that stands still, traced piece by piece
 // What       Goes round the picture in squares, in an order that spreads them, and adds paths of each pixel to the film
 //            until a time is over. The next call goes on where the last one ended.
-// Guarantee  no pixel has more than one round's paths more than another of those that were traced since restart()
+// Limits     a square that is cut short waits for its other rows until the next round
 #pragma once
 
 #include <atomic>

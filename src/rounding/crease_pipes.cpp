@@ -54,12 +54,11 @@ std::optional<Span> meet_capsule(Vec3d origin, Vec3d direction, Vec3d p0, Vec3d 
 
 }  // namespace
 
-std::vector<CreasePipes::Part> CreasePipes::parts_of(std::span<const Crease> creases) {
+std::vector<CreasePipes::Part> CreasePipes::parts_of(std::span<const CreaseCurve> creases) {
   std::vector<Part> parts;
-  for (std::uint32_t i = 0; i < creases.size(); ++i) {
-    const CreaseCurve& whole = creases[i].curve;
+  for (const CreaseCurve& whole : creases) {
     if (whole.is_line) {
-      parts.push_back({whole, i, 0});
+      parts.push_back({whole, 0});
       continue;
     }
     const int count = std::max(1, int(std::ceil((whole.u1 - whole.u0) / kPartAngle)));
@@ -71,7 +70,7 @@ std::vector<CreasePipes::Part> CreasePipes::parts_of(std::span<const Crease> cre
       // An affine image of a circle's arc.
       const double bulge =
           (1 - std::cos(0.5 * step)) * std::sqrt(length_squared(whole.a) + length_squared(whole.b));
-      parts.push_back({part, i, bulge});
+      parts.push_back({part, bulge});
     }
   }
   return parts;
@@ -88,7 +87,7 @@ std::vector<Box> CreasePipes::boxes_of(std::span<const Part> parts, double radiu
   return boxes;
 }
 
-CreasePipes::CreasePipes(std::vector<Crease> creases, double radius)
+CreasePipes::CreasePipes(std::vector<CreaseCurve> creases, double radius)
     : creases_(std::move(creases)),
       r_(radius),
       parts_(parts_of(creases_)),
@@ -120,27 +119,17 @@ std::optional<PipeHit> CreasePipes::first_entry(Vec3d origin, Vec3d direction, d
       }
     }
     if (t > end) return;
+    const Vec3d normal = normalize(origin + direction * t - curve.at(u));
+    if (dot(normal, direction) >= 0) return;
     end = t;
-    const Vec3d x = origin + direction * t;
     const bool is_inner = curve.is_line && u > curve.u0 && u < curve.u1;
-    best = PipeHit{t, normalize(x - curve.at(u)), part.crease, !is_inner};
+    best = PipeHit{t, normal, !is_inner};
   });
   return best;
 }
 
-std::optional<double> CreasePipes::distance(Vec3d x, double most) const {
-  std::optional<double> least;
-  const Vec3d reach(std::max(0.0, most - r_));
-  tree_.for_each_near(x - reach, x + reach, [&](std::uint32_t i) {
-    const CreaseCurve& curve = parts_[i].curve;
-    const double d = length(x - curve.at(nearest_parameter(curve, x)));
-    if (d < most && (!least || d < *least)) least = d;
-  });
-  return least;
-}
-
 std::size_t CreasePipes::bytes() const {
-  return creases_.size() * sizeof(Crease) + parts_.size() * sizeof(Part) + tree_.bytes();
+  return creases_.size() * sizeof(CreaseCurve) + parts_.size() * sizeof(Part) + tree_.bytes();
 }
 
 }  // namespace arris

@@ -13,41 +13,38 @@
 #include <vector>
 
 #include "rounding/box_tree.h"
-#include "rounding/creases.h"
+#include "rounding/crease_curve.h"
 
 namespace arris {
 
 struct PipeHit {
   double t = 0;
-  Vec3d normal;  // unit, from the crease
-  std::uint32_t crease = 0;
+  Vec3d normal;         // unit, from the crease
   bool at_end = false;  // on the ball around an end, or around an arc
 };
 
 class CreasePipes {
  public:
-  CreasePipes(std::vector<Crease> creases, double radius);
+  CreasePipes(std::vector<CreaseCurve> creases, double radius);
 
-  // The first place within [0, end] where the ray comes within r of a crease.
+  // The first place within [0, end] where the ray comes within r of a crease. One that leaves there does not count, so
+  // that a ray may start on a pipe.
   [[nodiscard]] std::optional<PipeHit> first_entry(Vec3d origin, Vec3d direction, double end) const;
-  // Distance to the nearest crease, if that is less than `most`.
-  [[nodiscard]] std::optional<double> distance(Vec3d x, double most) const;
 
-  [[nodiscard]] std::span<const Crease> creases() const { return creases_; }
+  [[nodiscard]] std::span<const CreaseCurve> creases() const { return creases_; }
   [[nodiscard]] std::size_t bytes() const;
 
  private:
   // A segment of a line, or a short part of an arc.
   struct Part {
     CreaseCurve curve;
-    std::uint32_t crease;
     double bulge;  // of the arc above its chord
   };
 
-  static std::vector<Part> parts_of(std::span<const Crease> creases);
+  static std::vector<Part> parts_of(std::span<const CreaseCurve> creases);
   static std::vector<Box> boxes_of(std::span<const Part> parts, double radius);
 
-  std::vector<Crease> creases_;
+  std::vector<CreaseCurve> creases_;
   double r_;
   std::vector<Part> parts_;
   BoxTree tree_;

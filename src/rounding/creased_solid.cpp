@@ -80,9 +80,8 @@ bool CreasedSolid::is_kept(Vec3d x, Vec3d normal, std::uint32_t region) const {
 }
 
 std::optional<PipeHit> CreasedSolid::cross_void(Vec3d x, Vec3d direction) const {
-  const SolidSurface::Exit exit =
-      surface.first_exit(x, direction, 1, tolerance / length(direction));
-  return pipes.first_entry(x, direction, exit.t);
+  return pipes.first_entry(x, direction,
+                           surface.first_exit(x, direction, tolerance / length(direction)));
 }
 
 std::vector<DepthAtCorners> find_depths(const SolidSurface& surface,

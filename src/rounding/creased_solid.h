@@ -3,7 +3,7 @@
 //            the void between the sharp and the rounded surface meets a pipe (crease_pipes.h) before it leaves the
 //            sharp solid, or passes
 // In / Out   coordinates relative to the solid's centre
-// Guarantee  tests/rounding/creased_test.cpp
+// Guarantee  the surface is that of all balls of the radius that fit (tests/rounding/creased_test.cpp)
 #pragma once
 
 #include <cstdint>

@@ -15,7 +15,6 @@ namespace {
 constexpr double kShortest = 1e-7;
 
 struct Face {
-  std::vector<std::uint32_t> triangles;  // of the mesh
   std::vector<std::pair<Vec3d, Vec3d>> outline;
   Vec3d low{std::numeric_limits<double>::infinity()},
       high{-std::numeric_limits<double>::infinity()};
@@ -44,7 +43,7 @@ class CreaseFinder {
     collect();
   }
 
-  std::optional<std::vector<Crease>> run() {
+  std::optional<std::vector<CreaseCurve>> run() {
     for (const auto& [a, b] : convex_) {
       const std::size_t before = out_.size();
       add_face_face(a, b);
@@ -82,7 +81,6 @@ class CreaseFinder {
       const std::uint32_t region = in_.regions.region[t];
       if (region == kNone) continue;
       Face& face = faces_[region];
-      face.triangles.push_back(t);
       for (std::uint32_t h = 3 * t; h < 3 * t + 3; ++h) {
         const Vec3d p0 = local(in_.mesh.origin(h)), p1 = local(in_.mesh.target(h));
         face.low = min(face.low, p0);
@@ -293,18 +291,17 @@ class CreaseFinder {
       const bool stays = is_on_erosion(curve.at(0.5 * (from + at[i])), face_a, face_b);
       if (stays && !is_open) open.u0 = from;
       if (stays) open.u1 = at[i];
-      if (!stays && is_open) add(curve, open, face_a, face_b);
+      if (!stays && is_open) add(curve, open);
       is_open = stays;
       from = at[i];
     }
-    if (is_open) add(curve, open, face_a, face_b);
+    if (is_open) add(curve, open);
   }
 
-  void add(const CreaseCurve& curve, Interval part, std::uint32_t face_a, std::uint32_t face_b) {
-    Crease crease{curve, face_a, face_b};
-    crease.curve.u0 = part.u0;
-    crease.curve.u1 = part.u1;
-    out_.push_back(crease);
+  void add(const CreaseCurve& curve, Interval part) {
+    out_.push_back(curve);
+    out_.back().u0 = part.u0;
+    out_.back().u1 = part.u1;
   }
 
   [[nodiscard]] static std::pair<Vec3d, Vec3d> box_of(const CreaseCurve& curve) {
@@ -413,12 +410,13 @@ class CreaseFinder {
   std::map<std::uint32_t, Corner> corners_;
   std::set<std::uint32_t> concave_;  // vertices at which a concave edge ends
   std::vector<const SurfaceTriangle*> near_;
-  std::vector<Crease> out_;
+  std::vector<CreaseCurve> out_;
 };
 
 }  // namespace
 
-std::optional<std::vector<Crease>> find_creases(const CreaseInput& input, std::uint32_t shell) {
+std::optional<std::vector<CreaseCurve>> find_creases(const CreaseInput& input,
+                                                     std::uint32_t shell) {
   return CreaseFinder(input, shell).run();
 }
 

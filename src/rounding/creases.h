@@ -24,12 +24,6 @@
 
 namespace arris {
 
-struct Crease {
-  CreaseCurve curve;
-  // Regions on whose offsets it lies; kNone for that of an edge or corner.
-  std::uint32_t face_a = kNone, face_b = kNone;
-};
-
 // A point this much nearer to the surface than r is in E all the same: corners of triangles lie beside their faces'
 // planes by so much, and what is computed from them by a little of the radius.
 inline double crease_tolerance(double size, double radius) {
@@ -48,6 +42,6 @@ struct CreaseInput {
 
 // Nothing: a convex edge has no crease. The radius is too large for what lies beside it, or more is taken away than
 // edges.
-std::optional<std::vector<Crease>> find_creases(const CreaseInput& input, std::uint32_t shell);
+std::optional<std::vector<CreaseCurve>> find_creases(const CreaseInput& input, std::uint32_t shell);
 
 }  // namespace arris

@@ -237,11 +237,13 @@ class RoundingMaker {
       triangles.push_back({at(0), at(1), at(2), regions_.region[t]});
     }
     SolidSurface surface(std::move(triangles));
-    std::optional<std::vector<Crease>> creases = find_creases(
+    std::optional<std::vector<CreaseCurve>> creases = find_creases(
         {welded_, regions_, kinds_, surface, solid.center, solid.size, options_.radius}, s);
     if (!creases) return false;
-    for (std::uint32_t t = 0; t < mesh_.triangles.size(); ++t) {
-      if (welded_.shell[t] != s || regions_.region[t] == kNone) continue;
+    for (std::uint32_t i = 0; i < shell.triangle_count; ++i) {
+      const std::uint32_t t = welded_.triangles_by_shell[shell.first_triangle + i];
+      // Pieces of split triangles have no barycentrics of their own.
+      if (t >= mesh_.triangles.size() || regions_.region[t] == kNone) continue;
       const Triangle& corners = mesh_.triangles[t];
       const auto at = [&](std::size_t k) {
         return Vec3d(mesh_.positions[corners[k]]) - solid.center;
@@ -378,6 +380,7 @@ class RoundingMaker {
   void make_tree() {
     std::vector<std::vector<DetectionEntry>> entries(data_->solids.size());
     for (const TriangleBand& b : bands_) {
+      if (b.band.arc == kNone) continue;  // creased solids ask their own trees
       const std::uint32_t face = data_->face[b.triangle];
       const std::uint32_t s = data_->faces[face].solid;
       const DetectionEntry part = detection_entry(b, face, data_->solids[s]);

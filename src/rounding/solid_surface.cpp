@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 namespace arris {
@@ -26,13 +27,6 @@ double side_of(Vec3d origin, Vec3d direction, Vec3d a, Vec3d b) {
 }
 
 }  // namespace
-
-Vec3d nearest_on_segment(Vec3d x, Vec3d p0, Vec3d p1) {
-  const Vec3d along = p1 - p0;
-  const double squared = length_squared(along);
-  if (!(squared > 0)) return p0;
-  return p0 + along * std::clamp(dot(x - p0, along) / squared, 0.0, 1.0);
-}
 
 // C. Ericson, "Real-Time Collision Detection" (2005), §5.1.5.
 Vec3d nearest_on_triangle(Vec3d x, const SurfaceTriangle& t) {
@@ -69,20 +63,19 @@ bool SolidSurface::is_near(Vec3d x, double distance, std::uint32_t but_region) c
   return found;
 }
 
-SolidSurface::Exit SolidSurface::first_exit(Vec3d origin, Vec3d direction, double side,
-                                            double after) const {
-  Exit exit;
-  tree_.for_each_along(origin, direction, after, exit.t, [&](std::uint32_t i) {
+double SolidSurface::first_exit(Vec3d origin, Vec3d direction, double after) const {
+  double exit = std::numeric_limits<double>::infinity();
+  tree_.for_each_along(origin, direction, after, exit, [&](std::uint32_t i) {
     const SurfaceTriangle& t = triangles_[i];
-    const Vec3d normal = cross(t.p1 - t.p0, t.p2 - t.p0) * side;
+    const Vec3d normal = cross(t.p1 - t.p0, t.p2 - t.p0);
     const double across = dot(normal, direction);
     if (!(across > 0)) return;
-    const double w0 = side_of(origin, direction, t.p1, t.p2) * side;
-    const double w1 = side_of(origin, direction, t.p2, t.p0) * side;
-    const double w2 = side_of(origin, direction, t.p0, t.p1) * side;
+    const double w0 = side_of(origin, direction, t.p1, t.p2);
+    const double w1 = side_of(origin, direction, t.p2, t.p0);
+    const double w2 = side_of(origin, direction, t.p0, t.p1);
     if (w0 < 0 || w1 < 0 || w2 < 0) return;
     const double at = dot(normal, t.p0 - origin) / across;
-    if (at > after && at < exit.t) exit = {at, t.region};
+    if (at > after) exit = std::min(exit, at);
   });
   return exit;
 }

@@ -4,8 +4,6 @@
 #pragma once
 
 #include <cstdint>
-#include <limits>
-#include <optional>
 #include <vector>
 
 #include "arris/math.h"
@@ -18,7 +16,6 @@ struct SurfaceTriangle {
   std::uint32_t region;  // flat region of the mesh
 };
 
-Vec3d nearest_on_segment(Vec3d x, Vec3d p0, Vec3d p1);
 Vec3d nearest_on_triangle(Vec3d x, const SurfaceTriangle& t);
 
 class SolidSurface {
@@ -28,13 +25,9 @@ class SolidSurface {
   // Whether a triangle of another region is nearer to x than `distance`.
   [[nodiscard]] bool is_near(Vec3d x, double distance, std::uint32_t but_region) const;
 
-  struct Exit {
-    double t = std::numeric_limits<double>::infinity();
-    std::uint32_t region = ~std::uint32_t{0};
-  };
-  // The first triangle at t > after that the ray meets from inside (side = 1) or from outside (−1). Hits on edges
-  // count for both triangles.
-  [[nodiscard]] Exit first_exit(Vec3d origin, Vec3d direction, double side, double after) const;
+  // The t > after at which the ray first leaves through a triangle; infinity if it doesn't. A ray through an edge meets
+  // both triangles.
+  [[nodiscard]] double first_exit(Vec3d origin, Vec3d direction, double after) const;
 
   // Visits every triangle whose box reaches into this one, and some beside it.
   template <class Visit>

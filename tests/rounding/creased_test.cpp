@@ -116,15 +116,20 @@ class Shooter {
 
   [[nodiscard]] const Rounding& rounding() const { return *rounding_; }
 
+  // At every other i near an edge, else near a corner.
+  Ray make_ray(int i) {
+    const auto& positions = mesh_.positions;
+    const Triangle& t = mesh_.triangles[pick(mesh_.triangles.size())];
+    Vec3d target(positions[t[0]]);
+    if (i % 2 == 0) target += (Vec3d(positions[t[1]]) - target) * uniform(rng_, 0, 1);
+    target += direction() * (uniform(rng_, 0, 1.5) * r_);
+    const Vec3d d = direction();
+    return {target - d * (20 * r_), d};
+  }
+
   void shoot(int rays, Tally& tally) {
     for (int i = 0; i < rays; ++i) {
-      const auto& positions = mesh_.positions;
-      const Triangle& t = mesh_.triangles[pick(mesh_.triangles.size())];
-      Vec3d target(positions[t[0]]);
-      if (i % 2 == 0) target += (Vec3d(positions[t[1]]) - target) * uniform(rng_, 0, 1);
-      target += direction() * (uniform(rng_, 0, 1.5) * r_);
-      const Vec3d d = direction();
-      judge({target - d * (20 * r_), d}, tally);
+      judge(make_ray(i), tally);
     }
   }
 
@@ -203,6 +208,30 @@ TEST(Creased, rays_agree_with_the_balls_that_fit) {
     all.examples.insert(all.examples.end(), tally.examples.begin(), tally.examples.end());
   }
   EXPECT_LE(all.wrong * 300, all.rays) << fmt::format("{}", fmt::join(all.examples, "\n"));
+}
+
+// What is reflected, and shadow rays.
+TEST(Creased, rays_that_leave_the_surface_do_not_meet_it_where_they_start) {
+  for (const Case& c : make_cases()) {
+    SCOPED_TRACE(c.mesh.name);
+    Shooter shooter(c, 7);
+    int left = 0;
+    for (int i = 0; i < 2000; ++i) {
+      const Ray ray = shooter.make_ray(i);
+      const RoundedMesh object{c.mesh.view(), &shooter.rounding()};
+      const auto hit = trace(ray, object);
+      if (!hit || hit->feature == Feature::face) continue;
+      if (dot(ray.direction, hit->normal) > 0) continue;  // it began in the solid
+      const Vec3d x = ray.origin + ray.direction * hit->t;
+      const Vec3d away = ray.direction - hit->normal * (2 * dot(ray.direction, hit->normal));
+      const auto next = trace({x, away}, object, RayStart::outside);
+      EXPECT_TRUE(!next || next->t > 1e-6 * c.radius)
+          << i << " " << name_of(hit->feature) << " to " << name_of(next->feature) << " at "
+          << next->t << ", cosine " << dot(away, next->normal);
+      ++left;
+    }
+    EXPECT_GT(left, 100);
+  }
 }
 
 }  // namespace
