@@ -8,6 +8,7 @@
 #include "arris/error.h"
 #include "geometry/shapes.h"
 #include "io/toml_scene.h"
+#include "support/error_message.h"
 
 namespace arris {
 namespace {
@@ -38,13 +39,7 @@ Scene read(const std::string& text) {
 }
 
 std::string refusal(const std::string& text) {
-  try {
-    read(text);
-  } catch (const Error& error) {
-    EXPECT_EQ(error.kind(), Error::Kind::input);
-    return error.what();
-  }
-  return "(was read)";
+  return test::refusal_of(read, text);
 }
 
 const std::string kFile = "[[object]]\nfile = \"m.glb\"\n";

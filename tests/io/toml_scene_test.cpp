@@ -14,6 +14,7 @@
 #include "geometry/shapes.h"
 #include "io/gltf_test_file.h"
 #include "support/cut_every_byte.h"
+#include "support/error_message.h"
 #include "support/temporary_folder.h"
 
 namespace arris {
@@ -55,13 +56,7 @@ Scene read(const std::string& text) {
 }
 
 std::string refusal(const std::string& text) {
-  try {
-    read(text);
-  } catch (const Error& error) {
-    EXPECT_EQ(error.kind(), Error::Kind::input);
-    return error.what();
-  }
-  return "(was read)";
+  return test::refusal_of(read, text);
 }
 
 const std::string kBox = "[[object]]\nshape = \"box\"\n";

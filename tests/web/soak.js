@@ -49,17 +49,8 @@ const middle = async () => {
   return [x + random(-120, 120), y + random(-80, 80)];
 };
 
-async function drop(name, text) {
-  const files = await page.evaluateHandle(
-    ([name, text]) => {
-      const transfer = new DataTransfer();
-      transfer.items.add(new File([text], name));
-      return transfer;
-    },
-    [name, text],
-  );
-  await page.dispatchEvent("#picture", "drop", { dataTransfer: files });
-  await files.dispose();
+async function open(name, text) {
+  await viewer.drop(page, name, text);
   await viewer.until(`${name} opened`, async () => (await page.locator("#model-name").textContent()) === name);
 }
 
@@ -118,7 +109,7 @@ const actions = {
       await second.context.close();
     }
   },
-  open: () => oneOf([() => drop("frame.stl", plateStl), () => drop("plate_and_cube.obj", plateAndCube)])(),
+  open: () => oneOf([() => open("frame.stl", plateStl), () => open("plate_and_cube.obj", plateAndCube)])(),
   savePicture: () => save("#save-picture"),
   saveScene: () => save("#save-scene"),
   reconnect: async () => {

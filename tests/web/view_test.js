@@ -469,33 +469,21 @@ pageTest("the server refuses wrong tokens, foreign origins and foreign hosts", {
 });
 
 pageTest("says so when models may not be dropped", {}, async ({ page }) => {
-  await drop(page, "frame.stl", plateStl);
+  await viewer.drop(page, "frame.stl", plateStl);
   await page.locator(".message.error", { hasText: "does not take models" }).waitFor();
   await page.getByRole("button", { name: "Dismiss this message" }).click();
   await page.locator(".message.error").waitFor({ state: "detached" });
 });
-
-async function drop(page, name, text) {
-  const files = await page.evaluateHandle(
-    ([name, text]) => {
-      const transfer = new DataTransfer();
-      transfer.items.add(new File([text], name));
-      return transfer;
-    },
-    [name, text],
-  );
-  await page.dispatchEvent("#picture", "drop", { dataTransfer: files });
-}
 
 test("a dropped file is opened where that is allowed", { timeout: 4 * viewer.PATIENCE_MS }, async () => {
   const other = await viewer.startServer(model, { options: ["--allow-upload"] });
   const { page, context, traffic, errors } = await viewer.openPage(other.url);
   try {
     await viewer.firstFrame(page);
-    await drop(page, "frame.stl", plateStl);
+    await viewer.drop(page, "frame.stl", plateStl);
     await viewer.until("the new model", async () => (await page.locator("#model-name").textContent()) === "frame.stl");
     await viewer.until("one object", () => scenes(traffic).at(-1).objects.length === 1);
-    await drop(page, "broken.stl", "solid nothing");
+    await viewer.drop(page, "broken.stl", "solid nothing");
     await page.locator(".message.error", { hasText: "broken.stl" }).waitFor();
     assert.equal(await page.locator("#model-name").textContent(), "frame.stl");
     assert.deepEqual(errors, []);

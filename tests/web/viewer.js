@@ -237,6 +237,19 @@ export async function drag(page, [x, y], [right, down], { button = "left", steps
   await page.mouse.up({ button });
 }
 
+export async function drop(page, name, text) {
+  const files = await page.evaluateHandle(
+    ([name, text]) => {
+      const transfer = new DataTransfer();
+      transfer.items.add(new File([text], name));
+      return transfer;
+    },
+    [name, text],
+  );
+  await page.dispatchEvent("#picture", "drop", { dataTransfer: files });
+  await files.dispose();
+}
+
 export async function screenshot(page, name) {
   fs.mkdirSync(screenshots, { recursive: true });
   await page.screenshot({ path: path.join(screenshots, `${name}.png`) });
