@@ -9,6 +9,8 @@ namespace {
 
 // Relative to the radius: bounds that differ by less are one.
 constexpr double kSame = 1e-6;
+// Relative to the radius: a place this near to the nearest one is as good.
+constexpr double kNear = 1e-4;
 // More functions than these cost more than asking the surface.
 constexpr std::size_t kMostDepths = 8;
 
@@ -33,7 +35,7 @@ class DepthBound {
       return bound;
     }
     double inside = 0, outside = 1;
-    for (int i = 0; i < 50; ++i) {
+    for (int i = 0; i < 24; ++i) {
       const double middle = 0.5 * (inside + outside);
       const bool is_near = distance_at(near + (offset_[farthest] - near) * middle) < r_;
       (is_near ? inside : outside) = middle;
@@ -46,11 +48,15 @@ class DepthBound {
     return length(c - nearest_on_triangle(c, other_));
   }
 
-  // By projecting back and forth between the two triangles.
+  // By projecting back and forth between the two triangles; about the nearest one does, too.
   [[nodiscard]] Vec3d nearest_place() const {
     const SurfaceTriangle own{offset_[0], offset_[1], offset_[2], 0};
     Vec3d c = (offset_[0] + offset_[1] + offset_[2]) / 3.0;
-    for (int i = 0; i < 100; ++i) c = nearest_on_triangle(nearest_on_triangle(c, other_), own);
+    for (int i = 0; i < 100; ++i) {
+      const Vec3d before = c;
+      c = nearest_on_triangle(nearest_on_triangle(c, other_), own);
+      if (length(c - before) < kNear * r_) break;
+    }
     return c;
   }
 
