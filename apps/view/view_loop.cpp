@@ -120,17 +120,20 @@ void ViewRenderer::Loop::run() {
 void ViewRenderer::Loop::step() {
   wait();
   std::deque<std::function<void()>> tasks;
+  std::vector<Input> inputs;
   std::optional<Clock::time_point> send;
   {
+    // Together: an input never overtakes its client's join().
     const std::lock_guard lock(mutex_);
     tasks.swap(tasks_);
+    inputs = mailbox_.take();
     woken_ = false;
     hurry_ = false;
     send = next_send_;
   }
   for (const auto& task : tasks) task();
   tasks.clear();
-  take_inputs();
+  for (Input& input : inputs) take(std::move(input));
   if (rest_at_ && Clock::now() >= *rest_at_) rest();
   finish_build();
   follow_edits();
@@ -168,26 +171,28 @@ void ViewRenderer::Loop::wait() {
   }
 }
 
-void ViewRenderer::Loop::take_inputs() {
-  std::vector<Input> inputs;
-  {
-    const std::lock_guard lock(mutex_);
-    inputs = mailbox_.take();
+void ViewRenderer::Loop::take(Input input) {
+  const auto is_here = [&](ClientId id) {
+    return std::ranges::find(clients_, id, &Client::id) != clients_.end();
+  };
+  std::erase_if(input.marks, [&](const InputMark& mark) { return !is_here(mark.client); });
+  // Who has left sees nothing, and picks nothing.
+  const bool is_own = std::holds_alternative<Hello>(input.what) ||
+                      std::holds_alternative<SetSize>(input.what) ||
+                      std::holds_alternative<Pick>(input.what);
+  if (is_own && !is_here(input.client)) return;
+  try {
+    apply(input);
+  } catch (const std::exception& error) {
+    add_marks(shown_, input.marks);
+    send("error",
+         error_message(input.marks.empty() ? std::nullopt : std::optional(input.marks.back().seq),
+                       error.what(), type_of(input.what)),
+         input.client);
+    // The page is to show what is, not what was asked for.
+    send_scene_soon();
   }
-  for (const Input& input : inputs) {
-    try {
-      apply(input);
-    } catch (const std::exception& error) {
-      add_marks(shown_, input.marks);
-      send("error",
-           error_message(input.marks.empty() ? std::nullopt : std::optional(input.marks.back().seq),
-                         error.what(), type_of(input.what)),
-           input.client);
-      // The page is to show what is, not what was asked for.
-      send_scene_soon();
-    }
-    add_marks(taken_, input.marks);
-  }
+  add_marks(taken_, input.marks);
 }
 
 void ViewRenderer::Loop::apply(const Input& input) {
@@ -291,8 +296,6 @@ void ViewRenderer::Loop::leave(ClientId client) {
   std::erase_if(unasked_, is_theirs);
   std::erase_if(building_, is_theirs);
   for (Asked& asked : asked_) std::erase_if(asked.marks, is_theirs);
-  const std::lock_guard lock(mutex_);
-  mailbox_.forget(client);
 }
 
 void ViewRenderer::Loop::note_active(const Input& input) {

@@ -65,7 +65,7 @@ class ViewRenderer::Loop {
 
   void run();
   void wait();
-  void take_inputs();
+  void take(Input input);
   void apply(const Input& input);
   void pick(const Input& input, const Pick& at);
   void start_beam();

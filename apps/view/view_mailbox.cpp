@@ -86,10 +86,4 @@ std::vector<Input> ViewMailbox::take() {
   return std::exchange(inputs_, {});
 }
 
-void ViewMailbox::forget(ClientId client) {
-  for (Input& input : inputs_) {
-    std::erase_if(input.marks, [&](const InputMark& mark) { return mark.client == client; });
-  }
-}
-
 }  // namespace arris::view

@@ -42,7 +42,6 @@ class ViewMailbox {
   // All, in the order of the newest of each kind.
   std::vector<Input> take();
   [[nodiscard]] bool is_empty() const { return inputs_.empty(); }
-  void forget(ClientId client);
 
  private:
   std::vector<Input> inputs_;

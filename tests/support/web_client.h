@@ -10,6 +10,7 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
+#include <chrono>
 #include <cstdint>
 #include <cstring>
 #include <nlohmann/json.hpp>
@@ -177,9 +178,10 @@ class WebSocket {
     bool is_binary = false;
     std::string payload;
   };
-  // Nothing: closed. Answers pings.
+  // Nothing: closed. Answers pings, but they are not what is waited for.
   std::optional<Message> read() {
-    for (;;) {
+    const auto end = std::chrono::steady_clock::now() + std::chrono::milliseconds(kPatienceMs);
+    while (std::chrono::steady_clock::now() < end) {
       const auto head = connection_.read(2);
       if (!head) return std::nullopt;
       const auto kind = static_cast<unsigned char>((*head)[0]) & 15U;
@@ -195,6 +197,7 @@ class WebSocket {
       if (kind == 9) send_frame(0x8A, *payload);
       if (kind == 1 || kind == 2) return Message{kind == 2, std::move(*payload)};
     }
+    throw std::runtime_error("nothing but pings comes");
   }
 
   nlohmann::json read_text(const std::string& type) {
