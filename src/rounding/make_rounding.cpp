@@ -10,15 +10,12 @@
 #include "rounding/bands.h"
 #include "rounding/crease_network.h"
 #include "rounding/eroded_polyhedron.h"
+#include "rounding/make_creased.h"
 #include "rounding/rounding_data.h"
 #include "rounding/rounding_parts.h"
 
 namespace arris {
 namespace {
-
-// Each curve is cut at the whole outlines of its faces: of a plate with many holes that takes the square of their
-// number.
-constexpr std::uint32_t kMostCreasedTriangles = 1000;
 
 std::string format_length(double value) {
   char text[32];
@@ -174,7 +171,7 @@ class RoundingMaker {
       ++cavities_;
       return;
     }
-    const bool creased = can_be_creased(s) && make_creased(s);
+    const bool creased = make_creased(s);
     const bool convex_solid = solid.convex && solid.closed;
     ShellNetwork network = builder.build(s, convex_solid);
     if (convex_solid && network.inverted) {
@@ -202,62 +199,15 @@ class RoundingMaker {
     networks_[s] = std::move(network);
   }
 
-  // Not convex, and nothing about it is curved or open. Whoever wants networks gets local ones.
-  [[nodiscard]] bool can_be_creased(std::uint32_t s) const {
-    const Solid& solid = data_->solids[s];
-    if (keep_networks_ || solid.convex || !solid.closed || options_.edges == RoundEdges::concave) {
-      return false;
-    }
-    const Shell& shell = welded_.shells[s];
-    if (shell.triangle_count > kMostCreasedTriangles) return false;
-    for (std::uint32_t i = 0; i < shell.triangle_count; ++i) {
-      const std::uint32_t t = welded_.triangles_by_shell[shell.first_triangle + i];
-      for (std::uint32_t h = 3 * t; h < 3 * t + 3; ++h) {
-        const EdgeKind kind = kinds_[h];
-        if (kind != EdgeKind::flat && kind != EdgeKind::convex && kind != EdgeKind::concave) {
-          return false;
-        }
-      }
-    }
-    return true;
-  }
-
-  // False: the radius takes away a whole edge.
+  // Whoever wants networks gets local ones. False: the radius takes away a whole edge, or the shape is not for it.
   bool make_creased(std::uint32_t s) {
     Solid& solid = data_->solids[s];
-    const Shell& shell = welded_.shells[s];
-    std::vector<SurfaceTriangle> triangles;
-    for (std::uint32_t i = 0; i < shell.triangle_count; ++i) {
-      const std::uint32_t t = welded_.triangles_by_shell[shell.first_triangle + i];
-      if (regions_.region[t] == kNone) continue;
-      const Triangle& corners = welded_.triangles[t];
-      const auto at = [&](std::size_t k) {
-        return Vec3d(welded_.vertices[corners[k]]) - solid.center;
-      };
-      triangles.push_back({at(0), at(1), at(2), regions_.region[t]});
-    }
-    SolidSurface surface(std::move(triangles));
-    std::optional<std::vector<CreaseCurve>> creases = find_creases(
-        {welded_, regions_, kinds_, surface, solid.center, solid.size, options_.radius}, s);
-    if (!creases) return false;
-    for (std::uint32_t i = 0; i < shell.triangle_count; ++i) {
-      const std::uint32_t t = welded_.triangles_by_shell[shell.first_triangle + i];
-      // Pieces of split triangles have no barycentrics of their own.
-      if (t >= mesh_.triangles.size() || regions_.region[t] == kNone) continue;
-      const Triangle& corners = mesh_.triangles[t];
-      const auto at = [&](std::size_t k) {
-        return Vec3d(mesh_.positions[corners[k]]) - solid.center;
-      };
-      const SurfaceTriangle triangle{at(0), at(1), at(2), regions_.region[t]};
-      const Vec3d normal = regions_.planes[triangle.region].normal;
-      for (const DepthAtCorners& d : find_depths(surface, triangle, normal, options_.radius)) {
-        bands_.push_back({t, {float(d.d0), float(d.d1 - d.d0), float(d.d2 - d.d0), kNone}});
-      }
-    }
+    if (keep_networks_ || solid.convex || options_.edges == RoundEdges::concave) return false;
+    const CreasedInput input{mesh_, welded_, regions_, kinds_, options_.radius};
+    std::optional<CreasedSolid> made = make_creased_solid(input, s, bands_);
+    if (!made) return false;
     solid.creased = std::uint32_t(data_->creased.size());
-    data_->creased.push_back(std::make_unique<const CreasedSolid>(
-        CreasedSolid{std::move(surface), CreasePipes(std::move(*creases), options_.radius),
-                     options_.radius, crease_tolerance(solid.size, options_.radius)}));
+    data_->creased.push_back(std::make_unique<const CreasedSolid>(std::move(*made)));
     return true;
   }
 
