@@ -12,6 +12,8 @@ packages=(
   libembree-dev libtbb-dev libhwy-dev
   # pictures
   libopenexr-dev libpng-dev libturbojpeg0-dev libstb-dev
+  # STEP: Open CASCADE, with all that it brings
+  libocct-data-exchange-dev
   # models, scenes, JSON
   nlohmann-json3-dev
   # geometry

@@ -24,7 +24,7 @@ struct LoadOptions {
   enum class OtherFiles { beside, none } other_files = OtherFiles::beside;
 };
 
-// By extension: .stl .obj .ply .off .gltf .glb .csg .scad .toml. Throws Error.
+// By extension: .stl .obj .ply .off .step .stp .gltf .glb .csg .scad .toml. Throws Error.
 Scene load_scene(const std::filesystem::path& path, const LoadOptions& options = {});
 
 // The extensions that load_scene() takes, with the dot.

@@ -30,6 +30,10 @@ bool looks_like_ply(std::span<const std::uint8_t> bytes);
 Scene read_off(std::span<const std::uint8_t> bytes, const std::string& file);
 bool looks_like_off(std::span<const std::uint8_t> bytes);
 
+// Needs arris-step; kind failed where that is not installed.
+Scene read_step(std::span<const std::uint8_t> bytes, const std::string& file);
+bool looks_like_step(std::span<const std::uint8_t> bytes);
+
 // How the OBJ reader reaches the files that a model names, relative to the model; each returns nothing
 // where there is no such file and throws Error where it can't be read. Both null: no other file may be read, and
 // models have no materials but their names.
