@@ -78,7 +78,8 @@ CommandRow render_row() {
       1,
       1,
       "make a picture of a model or scene",
-      "A bare model (STL, OBJ, PLY, OFF, glTF, OpenSCAD) is staged: framed, put on a soft ground, "
+      "A bare model (STL, OBJ, PLY, OFF, STEP, glTF, OpenSCAD) is staged: framed, put on a soft "
+      "ground, "
       "lit as in a studio, its edges rounded. A scene file (.toml) is rendered as it says. INPUT "
       "may be - for stdin: its format is told by its content. Ctrl-C ends the render early "
       "and keeps "

@@ -120,7 +120,7 @@ class AssemblyReader {
   Scene read() {
     TDF_LabelSequence roots;
     shapes_->GetFreeShapes(roots);
-    for (const TDF_Label& root : roots) visit(root, {}, "", MaterialId{0});
+    for (const TDF_Label& root : roots) visit(root, {}, {});
     note(missing_faces_, "faces could not be cut into triangles and are left out");
     note(without_surfaces_, "parts have no surfaces and are left out");
     if (scene_.objects.empty()) {
@@ -133,30 +133,36 @@ class AssemblyReader {
   struct Body {
     MeshId mesh;
     std::string name;
+    std::optional<MaterialId> material;
+  };
+  // What an instance says of its part, and the assemblies around it of parts without a colour.
+  struct Instance {
+    std::string name;
+    std::optional<MaterialId> own, inherited;
   };
 
   void note(std::size_t count, const char* what) {
     if (count > 0) scene_.notes.push_back(fmt::format("{} {}", count, what));
   }
 
-  // name, material: of the instance that leads to the label.
-  void visit(const TDF_Label& label, const TopLoc_Location& place, const std::string& name,
-             MaterialId material) {
+  void visit(const TDF_Label& label, const TopLoc_Location& place, const Instance& instance) {
     TDF_Label part;
     if (XCAFDoc_ShapeTool::GetReferredShape(label, part)) {
-      const std::string own_name = name_of(label);
-      visit(part, place * XCAFDoc_ShapeTool::GetLocation(label), own_name,
-            color_of(label).value_or(material));
+      visit(part, place * XCAFDoc_ShapeTool::GetLocation(label),
+            {name_of(label), color_of(label), instance.inherited});
       return;
     }
     if (!XCAFDoc_ShapeTool::IsAssembly(label)) {
-      place_part(label, place, name, material);
+      place_part(label, place, instance);
       return;
     }
+    Instance inside;
+    inside.inherited = instance.own                  ? instance.own
+                       : color_of(label).has_value() ? color_of(label)
+                                                     : instance.inherited;
     TDF_LabelSequence components;
     XCAFDoc_ShapeTool::GetComponents(label, components);
-    const MaterialId own = color_of(label).value_or(material);
-    for (const TDF_Label& component : components) visit(component, place, "", own);
+    for (const TDF_Label& component : components) visit(component, place, inside);
   }
 
   std::optional<MaterialId> color_of(const TDF_Label& label) {
@@ -168,8 +174,7 @@ class AssemblyReader {
     return materials_.material_of(color);
   }
 
-  void place_part(const TDF_Label& part, const TopLoc_Location& place, const std::string& name,
-                  MaterialId material) {
+  void place_part(const TDF_Label& part, const TopLoc_Location& place, const Instance& instance) {
     TCollection_AsciiString entry;
     TDF_Tool::Entry(part, entry);
     const auto [found, is_new] = bodies_.try_emplace(entry.ToCString());
@@ -180,11 +185,15 @@ class AssemblyReader {
     }
     for (std::size_t i = 0; i < bodies.size(); ++i) {
       Object& object = scene_.objects.emplace_back();
-      object.name = name.empty()         ? bodies[i].name
-                    : bodies.size() == 1 ? name
-                                         : fmt::format("{} {}", name, i + 1);
+      object.name = bodies[i].name;
+      if (!instance.name.empty()) {
+        object.name =
+            bodies.size() == 1 ? instance.name : fmt::format("{} {}", instance.name, i + 1);
+      }
       object.mesh = bodies[i].mesh;
-      object.material = material;
+      object.material = instance.own         ? *instance.own
+                        : bodies[i].material ? *bodies[i].material
+                                             : instance.inherited.value_or(MaterialId{0});
       object.world_from_object = affine_of(place);
     }
   }
@@ -215,7 +224,8 @@ class AssemblyReader {
     for (std::size_t i = 0; i < meshes.size(); ++i) {
       Mesh& mesh = meshes[i].mesh;
       mesh.name = meshes.size() == 1 || name.empty() ? name : fmt::format("{} {}", name, i + 1);
-      bodies.push_back({MeshId{std::uint32_t(scene_.meshes.size())}, mesh.name});
+      bodies.push_back(
+          {MeshId{std::uint32_t(scene_.meshes.size())}, mesh.name, meshes[i].material});
       scene_.meshes.push_back(std::move(mesh));
     }
     return bodies;

@@ -13,6 +13,7 @@
 #include <cstdint>
 
 #include "arris/error.h"
+#include "step/edge_marks.h"
 
 namespace arris::step {
 namespace {
@@ -135,12 +136,17 @@ void tessellate(const TopoDS_Shape& part) {
 PartMesh make_mesh(const std::vector<TopoDS_Face>& faces, const MaterialOfFace& material_of) {
   PartMesh part;
   std::vector<std::optional<MaterialId>> materials;
+  std::vector<PlacedFace> placed;
   for (const TopoDS_Face& face : faces) {
+    placed.push_back({face, std::uint32_t(part.mesh.positions.size())});
     if (!FaceMesher(face, part.mesh).append()) ++part.missing_faces;
     materials.resize(part.mesh.triangles.size(), material_of(face));
   }
-  const bool colored = std::ranges::any_of(materials, [](const auto& m) { return m.has_value(); });
-  if (colored) {
+  part.mesh.sharp_edges = find_sharp_edges(placed, part.mesh);
+  const auto differs = [&](const auto& material) { return material != materials[0]; };
+  if (std::ranges::none_of(materials, differs)) {
+    if (!materials.empty()) part.material = materials[0];
+  } else {
     for (const auto& material : materials) {
       part.mesh.triangle_materials.push_back(material.value_or(MaterialId{0}));
     }

@@ -28,6 +28,7 @@ void tessellate(const TopoDS_Shape& part);
 
 struct PartMesh {
   Mesh mesh;
+  std::optional<MaterialId> material;  // of all faces
   std::size_t missing_faces = 0;
 };
 // Of a tessellated shape. Empty: the object's material.

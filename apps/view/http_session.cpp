@@ -219,8 +219,8 @@ class HttpSession : public Stranger, public std::enable_shared_from_this<HttpSes
     const auto extension = upload_extension(target_.name);
     if (!extension) {
       return answer(refusal(http::status::unsupported_media_type,
-                            "this is no model that stands by itself; use .stl .obj .ply .off .gltf "
-                            ".glb .csg"));
+                            "this is no model that stands by itself; use .stl .obj .ply .off .step "
+                            ".gltf .glb .csg"));
     }
     if (!server_.begin_upload()) {
       return answer(refusal(http::status::service_unavailable, "another model is on its way"));

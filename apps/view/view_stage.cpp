@@ -405,7 +405,8 @@ std::vector<std::optional<double>> first_inradii(const ViewModel& model) {
     triangles += mesh.triangles.size();
     if (triangles > kMostTriangles) return std::optional<double>();
     try {
-      return find_radius_limits({positions, mesh.triangles}, min_angle).smallest_inradius;
+      return find_radius_limits({positions, mesh.triangles, mesh.sharp_edges}, min_angle)
+          .smallest_inradius;
     } catch (const Error&) {  // preparing says so, if it matters
       return std::optional<double>();
     }

@@ -12,9 +12,9 @@ namespace arris {
 
 // Edges of the welded mesh by what rounding does with them.
 struct EdgeCounts {
-  std::uint64_t convex = 0;       // turns outward by min_angle or more
-  std::uint64_t concave = 0;      // turns inward by min_angle or more
-  std::uint64_t smooth = 0;       // turns by less than min_angle, but is not flat
+  std::uint64_t convex = 0;       // sharp, turns outward
+  std::uint64_t concave = 0;      // sharp, turns inward
+  std::uint64_t smooth = 0;       // neither sharp nor flat
   std::uint64_t flat = 0;         // between coplanar triangles
   std::uint64_t boundary = 0;     // one triangle
   std::uint64_t nonmanifold = 0;  // not as many triangles run along it as against it

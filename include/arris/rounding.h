@@ -31,6 +31,8 @@ namespace arris {
 struct MeshView {
   std::span<const Vec3f> positions;
   std::span<const Triangle> triangles;
+  // As in Mesh. Set: these edges are sharp and no others, and no minimum angle is asked.
+  std::optional<std::span<const VertexPair>> sharp_edges{};
 };
 
 // How a hit finds the rounding near it (paper §3.2 against the index by face; bench/rounding compares). The tree

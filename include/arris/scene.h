@@ -21,6 +21,9 @@
 
 namespace arris {
 
+// Two vertices of a mesh.
+using VertexPair = std::array<std::uint32_t, 2>;
+
 // Triangles in object space. Positions need not be welded: preparation welds them into solids.
 struct Mesh {
   std::string name;
@@ -29,6 +32,9 @@ struct Mesh {
   std::vector<Vec3f> normals;                  // unit, one per position, or empty: flat shading
   std::vector<Vec2f> uvs;                      // one per position, or empty
   std::vector<MaterialId> triangle_materials;  // one per triangle, or empty: the object's
+  // Set where the file says which edges are sharp: these, by the vertices of one of their triangles; no others, however
+  // far they turn.
+  std::optional<std::vector<VertexPair>> sharp_edges{};
 };
 
 // 8-bit texels, row 0 at the top. uv (0,0) is the upper left corner (glTF's convention;

@@ -151,6 +151,11 @@ bool is_room(const WeldedMesh& mesh, const FlatRegions& regions, const Shell& sh
   return any_concave;
 }
 
+bool is_marked_sharp(const WeldedMesh& mesh, std::uint32_t h) {
+  const std::uint32_t a = mesh.origin(h), b = mesh.target(h);
+  return std::ranges::binary_search(*mesh.sharp_edges, VertexPair{std::min(a, b), std::max(a, b)});
+}
+
 void turn_shell(WeldedMesh& mesh, Shell& shell) {
   // Reversing (a, b, c) into (a, c, b) sends half-edge 3t+k to 3t+2-k.
   const auto turned = [](std::uint32_t h) { return h - h % 3 + 2 - h % 3; };
@@ -187,7 +192,9 @@ EdgeKind classify_edge(const WeldedMesh& mesh, const FlatRegions& regions, std::
   if (mesh.twin[h] == kNonManifold) return EdgeKind::nonmanifold;
   if (regions.region[h / 3] == regions.region[mesh.twin[h] / 3]) return EdgeKind::flat;
   const double turn = turn_at(mesh, regions, h);
-  if (std::abs(turn) < min_angle - kAngleTolerance) return EdgeKind::smooth;
+  const bool smooth =
+      mesh.sharp_edges ? !is_marked_sharp(mesh, h) : std::abs(turn) < min_angle - kAngleTolerance;
+  if (smooth) return EdgeKind::smooth;
   return turn > 0 ? EdgeKind::convex : EdgeKind::concave;
 }
 

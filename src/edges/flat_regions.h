@@ -35,6 +35,7 @@ enum class EdgeKind : std::uint8_t { flat, smooth, convex, concave, boundary, no
 // Turn between the two planes at half-edge h: 0 for flat, positive where the edge is convex, negative where
 // it is concave. Precondition: the half-edge has a twin.
 double turn_at(const WeldedMesh& mesh, const FlatRegions& regions, std::uint32_t h);
+// Sharp is what turns by min_angle or more or, if the mesh knows its sharp edges, these.
 EdgeKind classify_edge(const WeldedMesh& mesh, const FlatRegions& regions, std::uint32_t h,
                        double min_angle);
 

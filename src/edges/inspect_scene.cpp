@@ -83,8 +83,8 @@ ObjectReport inspect_object(const Scene& scene, const Object& object, double min
     report.bounds_min = min(report.bounds_min, world);
     report.bounds_max = max(report.bounds_max, world);
   }
-  WeldedMesh welded =
-      make_welded_mesh({positions, mesh.triangles}, "object \"" + object.name + "\"");
+  WeldedMesh welded = make_welded_mesh({positions, mesh.triangles, mesh.sharp_edges},
+                                       "object \"" + object.name + "\"");
   FlatRegions regions = make_flat_regions(welded);
   if (!turn_inverted_shells(welded, regions, min_angle).empty()) {
     regions = make_flat_regions(welded);

@@ -25,11 +25,32 @@ void check_mesh(const MeshView& mesh, const std::string& name) {
       }
     }
   }
+  for (const VertexPair& pair : mesh.sharp_edges.value_or(std::span<const VertexPair>())) {
+    if (std::max(pair[0], pair[1]) >= mesh.positions.size()) {
+      throw Error(Error::Kind::input, name,
+                  "a sharp edge has the vertices " + std::to_string(pair[0]) + " and " +
+                      std::to_string(pair[1]) + ", but there are only " +
+                      std::to_string(mesh.positions.size()));
+    }
+  }
   if (mesh.triangles.size() > kLastHalfEdge / 3) {
     throw Error(Error::Kind::input, name,
                 "has " + std::to_string(mesh.triangles.size()) + " triangles; at most " +
                     std::to_string(kLastHalfEdge / 3) + " can be rounded in one mesh");
   }
+}
+
+std::vector<VertexPair> weld_pairs(std::span<const VertexPair> pairs,
+                                   std::span<const std::uint32_t> vertex_of) {
+  std::vector<VertexPair> welded;
+  welded.reserve(pairs.size());
+  for (const VertexPair& pair : pairs) {
+    const std::uint32_t a = vertex_of[pair[0]], b = vertex_of[pair[1]];
+    if (a != b) welded.push_back({std::min(a, b), std::max(a, b)});
+  }
+  std::sort(welded.begin(), welded.end());
+  welded.erase(std::unique(welded.begin(), welded.end()), welded.end());
+  return welded;
 }
 
 std::uint32_t hash_position(Vec3f p) {
@@ -303,6 +324,7 @@ WeldedMesh make_welded_mesh(const MeshView& mesh, const std::string& name) {
     welded.triangles.push_back({vertex_of[t[0]], vertex_of[t[1]], vertex_of[t[2]]});
     welded.degenerate_triangles += is_degenerate(welded.triangles.back()) ? 1 : 0;
   }
+  if (mesh.sharp_edges) welded.sharp_edges = weld_pairs(*mesh.sharp_edges, vertex_of);
   find_twins(welded);
   while (JunctionHealer(welded).heal()) find_twins(welded);
   welded.shell.assign(welded.triangles.size(), kNone);

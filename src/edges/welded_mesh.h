@@ -13,6 +13,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -51,6 +52,8 @@ struct WeldedMesh {
   std::vector<std::uint32_t> triangles_by_shell;  // triangle indices, shell after shell
   std::uint64_t degenerate_triangles = 0;         // with two corners in one place
   std::uint64_t healed_junctions = 0;             // vertices on open edges of other triangles
+  // Those of MeshView, sorted, the smaller vertex first. Pieces of split triangles have none.
+  std::optional<std::vector<VertexPair>> sharp_edges;
 
   [[nodiscard]] std::uint32_t origin(std::uint32_t h) const { return triangles[h / 3][h % 3]; }
   [[nodiscard]] static std::uint32_t next(std::uint32_t h) { return h % 3 == 2 ? h - 2 : h + 1; }

@@ -114,6 +114,8 @@ std::vector<std::uint8_t> pack_scene(const Scene& scene) {
     packer.put_all(mesh.triangles);
     packer.put_all(mesh.normals);
     packer.put_all(mesh.triangle_materials);
+    packer.put(std::uint8_t(mesh.sharp_edges ? 1 : 0));
+    packer.put_all(mesh.sharp_edges.value_or(std::vector<VertexPair>()));
   }
   packer.put(std::uint64_t(scene.objects.size()));
   for (const Object& object : scene.objects) {
@@ -144,6 +146,9 @@ Scene unpack_scene(std::span<const std::uint8_t> bytes) {
     mesh.triangles = unpacker.take_all<Triangle>();
     mesh.normals = unpacker.take_all<Vec3f>();
     mesh.triangle_materials = unpacker.take_all<MaterialId>();
+    const bool knows_sharp_edges = unpacker.take<std::uint8_t>() != 0;
+    std::vector<VertexPair> sharp_edges = unpacker.take_all<VertexPair>();
+    if (knows_sharp_edges) mesh.sharp_edges = std::move(sharp_edges);
   }
   for (std::uint64_t n = unpacker.take_count(); n > 0; --n) {
     Object& object = scene.objects.emplace_back();

@@ -26,7 +26,8 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* kProgram = "arris-step";
-constexpr int kMostSeconds = 900;
+// Parts that fill a megabyte take some seconds; a few files make Open CASCADE loop for ever.
+constexpr int kMostSeconds = 120, kMostSecondsPerMegabyte = 30;
 // Of arris-step: OUTPUT holds what is wrong.
 constexpr int kRefused = 2;
 
@@ -80,13 +81,14 @@ Scene read_step(std::span<const std::uint8_t> bytes, const std::string& file) {
   const ScratchFolder folder("step");
   const fs::path input = folder / "model.step", output = folder / "scene";
   write_file_whole(input, bytes);
+  const int most_seconds = kMostSeconds + kMostSecondsPerMegabyte * int(bytes.size() >> 20);
   const std::optional<int> code =
-      run({*program, {input.string(), output.string()}, folder / "log", {}, kMostSeconds});
+      run({*program, {input.string(), output.string()}, folder / "log", {}, most_seconds});
   if (!code) {
     throw problem(file,
                   fmt::format("takes Open CASCADE longer than {} seconds, which is the limit; "
                               "split the model, or export it as STL",
-                              kMostSeconds));
+                              most_seconds));
   }
   if (*code == kRefused) throw problem(file, read_scratch(output));
   if (*code != 0) {

@@ -8,13 +8,16 @@
 #include <vector>
 
 #include "arris/error.h"
+#include "base/utf8_text.h"
 #include "io/mesh_readers.h"
+#include "io/text_scanner.h"
 
 namespace arris {
 namespace {
 
 constexpr std::string_view kFirst = "ISO-10303-21";
 constexpr std::string_view kLast = "END-ISO-10303-21";
+constexpr std::string_view kNoNumbers[] = {"nan", "inf", "infinity"};
 
 bool is_blank(char c) {
   return c == ' ' || (c >= '\t' && c <= '\r');
@@ -136,7 +139,27 @@ class SyntaxCheck {
       }
       if (text_.substr(at_).starts_with("/*")) break;
     }
-    return text_.substr(begin, at_ - begin);
+    const std::string_view plain = text_.substr(begin, at_ - begin);
+    check_numbers(plain);
+    return plain;
+  }
+
+  // Programs that can't print a number, on which Open CASCADE may loop for ever.
+  void check_numbers(std::string_view plain) const {
+    while (!plain.empty()) {
+      const std::string_view number = plain.substr(0, plain.find(','));
+      plain.remove_prefix(std::min(plain.size(), number.size() + 1));
+      std::string_view digits = number;
+      if (digits.starts_with('-') || digits.starts_with('+')) digits.remove_prefix(1);
+      const bool is_word = std::ranges::any_of(
+          kNoNumbers, [&](std::string_view word) { return equal_ignoring_case(digits, word); });
+      if (is_word || number.find(".#") != std::string_view::npos) {
+        throw error(
+            fmt::format("found {} where a number should be; repair the model and export it "
+                        "again",
+                        in_quotes(number)));
+      }
+    }
   }
 
   // As in "#12=(#7,#8": an entity begins with its own.

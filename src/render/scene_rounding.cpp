@@ -155,7 +155,7 @@ class Maker {
       positions = own;
     }
     task.result = std::make_shared<const Rounding>(
-        make_rounding({positions, triangles}, task.options, place_of(object)));
+        make_rounding({positions, triangles, mesh.sharp_edges}, task.options, place_of(object)));
   }
 
   void attach(Task& task) {
@@ -218,10 +218,11 @@ RadiusLimits limits_of(const Mesh& mesh, const Object& object, double min_angle,
                        std::optional<double> scale) {
   if (!scale) {
     const std::vector<Vec3f> positions = transformed_positions(mesh, object.world_from_object);
-    return find_radius_limits({positions, mesh.triangles}, min_angle, place_of(object));
+    return find_radius_limits({positions, mesh.triangles, mesh.sharp_edges}, min_angle,
+                              place_of(object));
   }
-  RadiusLimits limits =
-      find_radius_limits({mesh.positions, mesh.triangles}, min_angle, place_of(object));
+  RadiusLimits limits = find_radius_limits({mesh.positions, mesh.triangles, mesh.sharp_edges},
+                                           min_angle, place_of(object));
   if (limits.smallest_inradius) *limits.smallest_inradius *= *scale;
   if (limits.typical_half_width) *limits.typical_half_width *= *scale;
   return limits;

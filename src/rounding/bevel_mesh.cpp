@@ -24,7 +24,8 @@ class BevelMaker {
   BevelMaker(const Mesh& mesh, const RoundingOptions& options, int subdivisions,
              const std::string& name)
       : source_(mesh),
-        parts_(make_rounding_parts({mesh.positions, mesh.triangles}, options, name)),
+        parts_(
+            make_rounding_parts({mesh.positions, mesh.triangles, mesh.sharp_edges}, options, name)),
         subdivisions_(subdivisions) {}
 
   BevelMesh make() {

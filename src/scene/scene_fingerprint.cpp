@@ -52,6 +52,7 @@ class Fingerprint {
     add(mesh.normals);
     add(mesh.uvs);
     add(mesh.triangle_materials);
+    if (mesh.sharp_edges) add(*mesh.sharp_edges);
   }
   void add(const Texture& texture) {
     add(texture.width_px);

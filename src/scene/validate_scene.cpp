@@ -84,6 +84,17 @@ void check_mesh(const Scene& scene, std::size_t index, Problems& problems) {
         return fmt::format("{}: triangle {} refers to vertex {}, but there are {}", where, i,
                            std::max({t[0], t[1], t[2]}), vertices);
       });
+  if (mesh.sharp_edges) {
+    report_first(
+        *mesh.sharp_edges,
+        [&](const VertexPair& edge) { return edge[0] >= vertices || edge[1] >= vertices; },
+        problems,
+        [&](std::size_t i) {
+          const VertexPair& edge = (*mesh.sharp_edges)[i];
+          return fmt::format("{}: the sharp edge {} refers to vertex {}, but there are {}", where,
+                             i, std::max(edge[0], edge[1]), vertices);
+        });
+  }
   report_first(
       mesh.normals, [](Vec3f n) { return !is_finite(n); }, problems,
       [&](std::size_t i) {

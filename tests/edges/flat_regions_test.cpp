@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "edges/inscribed_ball.h"
@@ -17,7 +18,7 @@ struct Analysed {
 };
 
 Analysed analyse(const Mesh& mesh, double min_angle = radians(30)) {
-  Analysed a{make_welded_mesh({mesh.positions, mesh.triangles}, mesh.name), {}};
+  Analysed a{make_welded_mesh({mesh.positions, mesh.triangles, mesh.sharp_edges}, mesh.name), {}};
   a.regions = make_flat_regions(a.mesh);
   if (!turn_inverted_shells(a.mesh, a.regions, min_angle).empty()) {
     a.regions = make_flat_regions(a.mesh);
@@ -45,6 +46,26 @@ TEST(FlatRegions, a_box_has_six_faces_and_twelve_convex_edges) {
   EXPECT_EQ(count_edges(a, EdgeKind::convex), 12U);
   EXPECT_EQ(count_edges(a, EdgeKind::flat), 6U);
   for (const Plane& plane : a.regions.planes) EXPECT_GT(plane.d, 0.4);
+}
+
+TEST(FlatRegions, where_sharp_edges_are_named_no_angle_is_asked) {
+  Mesh mesh = make_box_mesh({1, 2, 3});
+  const auto find = [&](Vec3f p) {
+    return std::uint32_t(std::ranges::find(mesh.positions, p) - mesh.positions.begin());
+  };
+  // Their numbers may be those of any vertex at the place, in any order, and twice.
+  const VertexPair named{find({0.5F, 1, 1.5F}), find({0.5F, 1, -1.5F})};
+  mesh.sharp_edges = {{named, {named[1], named[0]}}};
+  for (const Mesh& one : {mesh, inside_out(mesh)}) {
+    for (const double min_angle : {0.0, radians(30), radians(170)}) {
+      const Analysed a = analyse(one, min_angle);
+      EXPECT_EQ(count_edges(a, EdgeKind::convex, min_angle), 1U);
+      EXPECT_EQ(count_edges(a, EdgeKind::smooth, min_angle), 11U);
+      EXPECT_EQ(count_edges(a, EdgeKind::flat, min_angle), 6U);
+    }
+  }
+  mesh.sharp_edges->clear();
+  EXPECT_EQ(count_edges(analyse(mesh), EdgeKind::smooth), 12U);
 }
 
 TEST(FlatRegions, turn_is_the_angle_between_the_normals) {

@@ -3,7 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cstdint>
 #include <limits>
+#include <vector>
 
 #include "arris/error.h"
 #include "geometry/shapes.h"
@@ -139,6 +141,14 @@ TEST(WeldedMesh, rejects_positions_that_are_not_finite) {
   Mesh mesh = make_box_mesh({1, 1, 1});
   mesh.positions[3].y = std::numeric_limits<float>::quiet_NaN();
   EXPECT_THROW(weld(mesh), Error);
+}
+
+TEST(WeldedMesh, rejects_sharp_edges_of_vertices_that_are_not_there) {
+  const Mesh mesh = make_box_mesh({1, 1, 1});
+  const auto count = std::uint32_t(mesh.positions.size());
+  const std::vector<VertexPair> good{{0, count - 1}}, bad{{0, 1}, {count, 0}};
+  EXPECT_NO_THROW(make_welded_mesh({mesh.positions, mesh.triangles, good}, "box"));
+  EXPECT_THROW(make_welded_mesh({mesh.positions, mesh.triangles, bad}, "box"), Error);
 }
 
 }  // namespace

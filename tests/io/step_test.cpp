@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "arris/inspect.h"
 #include "arris/io.h"
 #include "io/mesh_readers.h"
 #include "io/step_syntax.h"
@@ -112,6 +113,63 @@ TEST_F(StepReader, triangles_face_as_their_normals) {
   }
 }
 
+EdgeCounts edges_of(const Scene& scene, double min_angle = radians(30)) {
+  return inspect_scene(scene, min_angle).objects.at(0).edges;
+}
+
+TEST_F(StepReader, faces_that_touch_smoothly_have_no_sharp_edge) {
+  test::StepFile file;
+  const test::StepPrism slot{{{0, 0, {}}, {4, 0, {{4, 1}}}, {4, 2, {}}, {0, 2, {{0, 1}}}}, {}, 1};
+  file.add_part("slot", {file.add_prism(slot).solid});
+  const Scene scene = read(file.text());
+  const Mesh& mesh = scene.meshes.read().at(0);
+  EXPECT_TRUE(test::is_closed(mesh));
+  std::size_t facets = 0;  // those of both half circles, and the two flat walls
+  ASSERT_TRUE(mesh.sharp_edges);
+  for (const auto& [a, b] : *mesh.sharp_edges) {
+    EXPECT_EQ(mesh.positions[a].z, mesh.positions[b].z);
+    facets += mesh.positions[a].z == 0 ? 1 : 0;
+  }
+  EXPECT_GE(facets, std::size_t(2 + 2 * kPi / kAngle));
+  for (const double min_angle : {0.0, radians(30), kPi}) {
+    const EdgeCounts edges = edges_of(scene, min_angle);
+    EXPECT_EQ(edges.convex, 2 * facets);
+    EXPECT_EQ(edges.concave, 0U);
+    EXPECT_GE(edges.smooth, facets);
+  }
+}
+
+TEST_F(StepReader, edges_that_turn_little_are_sharp) {
+  test::StepFile file;
+  const test::StepPrism bent{{{0, 0, {}},
+                              {2, 0, {}},
+                              {4, 2 * std::tan(radians(10)), {}},
+                              {4, 2, {}},
+                              {2, 2 - 2 * std::tan(radians(5)), {}},
+                              {0, 2, {}}},
+                             {},
+                             1};
+  file.add_part("bent", {file.add_prism(bent).solid});
+  const EdgeCounts edges = edges_of(read(file.text()));
+  EXPECT_EQ(edges.convex, 12U + 5U);
+  EXPECT_EQ(edges.concave, 1U);
+  EXPECT_EQ(edges.smooth, 0U);
+}
+
+TEST_F(StepReader, rims_of_holes_are_sharp) {
+  test::StepFile file;
+  file.add_part("plate", {file.add_prism(plate_with_hole()).solid});
+  const Scene scene = read(file.text());
+  std::size_t facets = 0;
+  for (const auto& [a, b] : *scene.meshes.read().at(0).sharp_edges) {
+    const Vec3f p = scene.meshes.read().at(0).positions[a];
+    facets += p.z == 0 && p.x > 0 && p.x < 4 && p.y > 0 && p.y < 3 ? 1 : 0;
+  }
+  EXPECT_GE(facets, std::size_t(2 * kPi / kAngle));
+  EXPECT_EQ(edges_of(scene).convex, 12 + 2 * facets);
+  EXPECT_EQ(edges_of(scene).concave, 0U);
+}
+
 TEST_F(StepReader, instances_share_a_mesh) {
   test::StepFile file;
   const auto bolt = file.add_part("bolt", {file.add_prism(test::step_box(1, 1, 2)).solid});
@@ -185,6 +243,19 @@ TEST_F(StepReader, colours_become_materials) {
     if (!is_top) {
       EXPECT_NEAR(material.base_color.y, 0.2140F, 0.002F);
     }
+  }
+}
+
+TEST_F(StepReader, a_colour_of_the_whole_part_is_the_objects) {
+  test::StepFile file;
+  const auto bolt = file.add_prism(test::step_box(1, 1, 2));
+  file.color(bolt.solid, 0, 1, 0);
+  file.add_assembly("pair", file.add_part("bolt", {bolt.solid}), {{"a", 0, 0, 0}, {"b", 5, 0, 0}});
+  const Scene scene = read(file.text());
+  ASSERT_EQ(scene.objects.size(), 2U);
+  for (const Object& object : scene.objects) {
+    EXPECT_EQ(scene.materials.read().at(object.material.index).name, "#00ff00");
+    EXPECT_EQ(scene.meshes.read().at(object.mesh.index).triangle_materials.size(), 0U);
   }
 }
 
@@ -286,6 +357,10 @@ TEST(StepSyntax, names_line_and_cause) {
               HasSubstr("part.step:5: a statement ends within"));
   EXPECT_THAT(syntax_problem(kBegin + "#1=A());" + kEnd), HasSubstr("did not begin"));
   EXPECT_THAT(syntax_problem(kBegin + "#1=\x01;" + kEnd), HasSubstr("byte 0x01"));
+  for (const std::string number : {"NaN", "-inf", "1.#INF", "-1.#IND"}) {
+    EXPECT_THAT(syntax_problem(kBegin + "#1=A((1.," + number + ",2.));" + kEnd),
+                HasSubstr("part.step:5: found \"" + number + "\" where a number should be"));
+  }
   EXPECT_THAT(syntax_problem(kBegin + std::string(100'000, '(')), HasSubstr("200 levels"));
 }
 

@@ -49,6 +49,14 @@ TEST(validate_scene, names_indices_out_of_range) {
   expect_problem(scene, "triangle 3 refers to vertex 8, but there are 8");
 }
 
+TEST(validate_scene, names_sharp_edges_out_of_range) {
+  Scene scene = valid_scene();
+  scene.meshes[0].sharp_edges = {{{0, 7}}};
+  EXPECT_THAT(validate_scene(scene), ElementsAre());
+  scene.meshes[0].sharp_edges->push_back({8, 1});
+  expect_problem(scene, "the sharp edge 1 refers to vertex 8, but there are 8");
+}
+
 TEST(validate_scene, names_arrays_of_the_wrong_length) {
   Scene scene = valid_scene();
   scene.meshes[0].normals.resize(3);
