@@ -13,6 +13,7 @@
 #include <system_error>
 #include <vector>
 
+#include "base/utf8_text.h"
 #include "io/child_process.h"
 #include "io/file_bytes.h"
 #include "io/mesh_readers.h"
@@ -30,6 +31,8 @@ constexpr const char* kProgram = "arris-step";
 constexpr int kMostSeconds = 120, kMostSecondsPerMegabyte = 30;
 // Of arris-step: OUTPUT holds what is wrong.
 constexpr int kRefused = 2;
+// Of the loader: one of its libraries is not there.
+constexpr int kNotLoaded = 127;
 
 // Beside the running program, where arris was installed, or on the PATH.
 std::optional<fs::path> find_arris_step() {
@@ -91,6 +94,16 @@ Scene read_step(std::span<const std::uint8_t> bytes, const std::string& file) {
                               most_seconds));
   }
   if (*code == kRefused) throw problem(file, read_scratch(output));
+  if (*code == kNotLoaded) {
+    // "PROGRAM: error while loading shared libraries: NAME: …"
+    std::string log = read_scratch(folder / "log");
+    if (const std::size_t colon = log.find(": "); colon != std::string::npos) {
+      log.erase(0, colon + 2);
+    }
+    throw Error(Error::Kind::failed, program->string(),
+                fmt::format("can't run: {}; install Debian's libocct-data-exchange-7.6",
+                            in_quotes(log.substr(0, log.find('\n')))));
+  }
   if (*code != 0) {
     throw problem(
         file,
