@@ -20,7 +20,8 @@ OptionGroup rounding_group(const std::string& default_radius) {
         "and a note says "
         "so"},
        {"--round-min-angle", "DEG",
-        "edges that turn by less are part of a smooth surface (default: the file's, else 30)"},
+        "edges that turn by less are part of a smooth surface (default: the file's, else 30); STEP "
+        "files say themselves which edges are sharp"},
        {"--round-method", "exact|shader|mesh:N|none",
         "exact: rounded surfaces; shader: bevel shader, normals only; mesh:N: bevel geometry of N "
         "subdivisions (default: the file's, else exact)"}}};

@@ -70,6 +70,7 @@ int main(int count, char** arguments) {
   }
   ::signal(SIGINT, SIG_IGN);  // the program that started this one decides
   ::prctl(PR_SET_PDEATHSIG, SIGKILL);
+  ::prctl(PR_SET_DUMPABLE, 0);  // a crash is an answer: no core file
   if (arris::step::kLimited) arris::step::limit_memory(arguments[1]);
   int code = arris::step::kFailed;
   try {
