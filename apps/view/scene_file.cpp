@@ -94,6 +94,7 @@ class EntryWriter {
     erase_toml(table_, {"part"});
     write_visible();
     write_rounding();
+    write_auto_radius();
     if (std::ranges::any_of(entry_.parts, [&](auto part) { return is_moved(part); })) {
       write_places();
     }
@@ -145,6 +146,30 @@ class EntryWriter {
     for (const Entry::Part part : entry_.parts) {
       if (const auto rounding = rounding_of(part)) {
         set_toml(new_parts_[part.number], "round", make_rounding_table(*rounding));
+      }
+    }
+  }
+
+  // What "auto" comes to in the view, and does whatever camera and size the file is rendered with.
+  [[nodiscard]] std::optional<double> auto_radius_of(Entry::Part part) const {
+    const RoundingSettings& settings = edit_of(part).rounding.value_or(edits_.rounding);
+    const bool is_auto = std::holds_alternative<AutoRadius>(settings.radius);
+    return is_auto ? edit_of(part).auto_radius : std::nullopt;
+  }
+
+  void write_auto_radius() {
+    erase_toml(table_, {"auto_radius"});
+    erase_of_own_parts({"auto_radius"});
+    const std::optional<double> first = auto_radius_of(entry_.parts.front());
+    const bool is_common = std::ranges::all_of(
+        entry_.parts, [&](Entry::Part part) { return auto_radius_of(part) == first; });
+    if (is_common) {
+      if (first) set_toml(table_, "auto_radius", *first);
+      return;
+    }
+    for (const Entry::Part part : entry_.parts) {
+      if (const auto radius = auto_radius_of(part)) {
+        set_toml(new_parts_[part.number], "auto_radius", *radius);
       }
     }
   }

@@ -119,6 +119,13 @@ RoundingSettings with_method(RoundingSettings settings, std::optional<RoundMetho
   return settings;
 }
 
+// Empty: there is nothing to round, or no length that reads well (all of it lies at the camera).
+std::optional<double> first_auto_radius(const Scene& staged, const Object& object) {
+  if (object.csg || staged.meshes[object.mesh.index].positions.empty()) return std::nullopt;
+  const double radius = most_auto_radius(staged, object);
+  return radius > 0 && std::isfinite(radius) ? std::optional(radius) : std::nullopt;
+}
+
 void check_object(const ViewModel& model, std::uint32_t id) {
   if (id < model.scene.objects.size()) return;
   throw Error(
@@ -247,8 +254,10 @@ ViewEdits first_edits(const ViewModel& model) {
   if (model.stage.material) edits.material = model.stage.material->name;
   edits.ground = report.ground_triangles > 0;
   edits.shader = model.shader;
-  for (const Object& object : model.scene.objects) {
-    edits.objects.push_back({true, object.rounding, false, object.world_from_object});
+  for (std::size_t i = 0; i < model.scene.objects.size(); ++i) {
+    const Object& object = model.scene.objects[i];
+    edits.objects.push_back({true, object.rounding, false, object.world_from_object,
+                             first_auto_radius(staged, staged.objects[i])});
   }
   return edits;
 }
@@ -273,7 +282,9 @@ ViewEdits carry_over(const ViewEdits& first_before, const ViewEdits& edits, View
   carry(first_before.shader, edits.shader, out.shader);
   if (out.objects.size() == edits.objects.size()) {
     for (std::size_t i = 0; i < out.objects.size(); ++i) {
+      const std::optional<double> auto_radius = out.objects[i].auto_radius;
       carry(first_before.objects[i], edits.objects[i], out.objects[i]);
+      out.objects[i].auto_radius = auto_radius;
     }
   }
   out.size = edits.size;
@@ -345,6 +356,7 @@ StagedView stage_view(const ViewModel& model, const ViewEdits& edits,
       if (!edit.visible) continue;
       out.index_of.back() = std::uint32_t(scene.objects.size());
       staged[i].world_from_object = edit.world_from_object;
+      staged[i].auto_radius = edit.auto_radius;
       staged[i].rounding = edit.rounding;
       if (edit.rounding) staged[i].rounding = with_method(*edit.rounding, method);
     }

@@ -38,6 +38,8 @@ struct ObjectEdit {
   std::optional<RoundingSettings> rounding;  // empty: the scene's
   bool has_edited_radius = false;            // of `rounding`; the rest follows the scene's rounding
   Affine3d world_from_object;
+  // What automatic radii take at most, by the first view of all: later ones, and other picture sizes, change nothing.
+  std::optional<double> auto_radius;
   friend bool operator==(const ObjectEdit&, const ObjectEdit&) = default;
 };
 

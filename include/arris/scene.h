@@ -123,6 +123,8 @@ struct Object {
   MaterialId material;
   Affine3d world_from_object;
   std::optional<RoundingSettings> rounding;  // empty: the scene's default
+  // World units: the most that AutoRadius takes; empty: what reads well in the scene's picture.
+  std::optional<double> auto_radius;
   ObjectOrigin origin;
 };
 

@@ -121,6 +121,7 @@ TomlObjects::Placement TomlObjects::parse_placement(TomlTableReader& reader) {
   placement.world_from_object = parse_toml_transform(reader, own);
   placement.track.keys = parse_keys(reader, own);
   placement.rounding = parse_round(reader);
+  placement.auto_radius = reader.number("auto_radius", kTomlPositive);
   placement.hidden = reader.boolean("hidden").value_or(false);
   return placement;
 }
@@ -152,6 +153,7 @@ void TomlObjects::add_shape(TomlTableReader& reader, Placement& placement) {
   object.mesh = entry->second;
   object.material = placement.material.value_or(MaterialId{0});
   object.rounding = placement.rounding;
+  object.auto_radius = placement.auto_radius;
   if (!placement.hidden) place(std::move(object), placement);
 }
 
@@ -177,6 +179,7 @@ void TomlObjects::add_file(TomlTableReader& reader, Placement& placement) {
     }
     if (placement.rounding) object.rounding = placement.rounding;
     if (edit.rounding) object.rounding = edit.rounding;
+    object.auto_radius = edit.auto_radius ? edit.auto_radius : placement.auto_radius;
     if (edit.file_from_part) object.world_from_object = *edit.file_from_part;
     place(std::move(object), placement);
   }

@@ -55,6 +55,7 @@ std::vector<TomlObjects::PartEdit> TomlObjects::parse_parts(TomlTableReader& own
     const auto hidden = reader.boolean("hidden");
     const auto material = parse_material(reader);
     const auto rounding = parse_round(reader);
+    const auto auto_radius = reader.number("auto_radius", kTomlPositive);
     std::optional<Affine3d> file_from_part;
     if (has_toml_transform(reader)) {
       ObjectKey own;
@@ -65,6 +66,7 @@ std::vector<TomlObjects::PartEdit> TomlObjects::parse_parts(TomlTableReader& own
       edit.hidden = hidden.value_or(edit.hidden);
       if (material) edit.material = material;
       if (rounding) edit.rounding = rounding;
+      if (auto_radius) edit.auto_radius = auto_radius;
       if (file_from_part) edit.file_from_part = file_from_part;
     }
     reader.report_unknown();

@@ -98,6 +98,7 @@ class TomlObjects {
     std::string name;  // empty: not given
     std::optional<MaterialId> material;
     std::optional<RoundingSettings> rounding;
+    std::optional<double> auto_radius;
     Affine3d world_from_object;
     ObjectTrack track;  // parts: what has been placed
     bool hidden = false;
@@ -108,6 +109,7 @@ class TomlObjects {
     bool hidden = false;
     std::optional<MaterialId> material;
     std::optional<RoundingSettings> rounding;
+    std::optional<double> auto_radius;
     std::optional<Affine3d> file_from_part;  // instead of where the file has it
   };
   struct Model {

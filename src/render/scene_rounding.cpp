@@ -235,10 +235,8 @@ double percent_radius(const RadiusLimits& limits, double percent) {
 
 double auto_radius(const Scene& scene, const Object& object, const RadiusLimits& limits) {
   if (!limits.typical_half_width) return 0;  // no edge to round
-  const Mesh& mesh = scene.meshes[object.mesh.index];
-  const double readable =
-      readable_radius(*scene.camera, scene.image, center_of(mesh, object.world_from_object));
-  return std::min(readable, kAutoPartOfHalfWidth * *limits.typical_half_width);
+  return std::min(most_auto_radius(scene, object),
+                  kAutoPartOfHalfWidth * *limits.typical_half_width);
 }
 
 }  // namespace
@@ -251,6 +249,12 @@ std::optional<double> similarity_scale(const Mat3d& m) {
   const bool square = std::abs(dot(m.x, m.y)) < slack && std::abs(dot(m.y, m.z)) < slack &&
                       std::abs(dot(m.z, m.x)) < slack;
   return same && square ? std::optional(s) : std::nullopt;
+}
+
+double most_auto_radius(const Scene& scene, const Object& object) {
+  if (object.auto_radius) return *object.auto_radius;
+  const Mesh& mesh = scene.meshes[object.mesh.index];
+  return readable_radius(*scene.camera, scene.image, center_of(mesh, object.world_from_object));
 }
 
 double resolve_radius(const Scene& scene, const Object& object, const RoundingSettings& settings,

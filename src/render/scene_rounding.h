@@ -113,6 +113,9 @@ SceneRounding make_scene_rounding(const SceneGeometry& geometry,
 // Length of the columns if they are orthogonal and of one length.
 std::optional<double> similarity_scale(const Mat3d& m);
 
+// The most that AutoRadius takes for one object, a mesh with positions: its own, or what its scene's camera says.
+double most_auto_radius(const Scene& scene, const Object& object);
+
 // The world radius that the settings mean for one object, 0 if none. `scale` of a similarity, if the object is to be
 // measured in its own space.
 double resolve_radius(const Scene& scene, const Object& object, const RoundingSettings& settings,

@@ -155,6 +155,7 @@ class Fingerprint {
     add(object.material);
     add(object.world_from_object);
     add(object.rounding);
+    add(object.auto_radius);
   }
   void add(const Camera& camera) {
     add(camera.position);

@@ -314,6 +314,10 @@ void check_object(const Scene& scene, std::size_t index, Problems& problems) {
       object.mesh.index < scene.meshes.size()) {
     check_reach(scene, object, where, problems);
   }
+  if (object.auto_radius && !(*object.auto_radius > 0 && std::isfinite(*object.auto_radius))) {
+    problems.push_back(fmt::format("{}: its automatic radius is {:g}; it must be more than 0",
+                                   where, *object.auto_radius));
+  }
   if (object.rounding) {
     check_rounding(where, *object.rounding, problems);
   }

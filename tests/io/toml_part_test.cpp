@@ -45,6 +45,19 @@ std::string refusal(const std::string& text) {
 const std::string kFile = "[[object]]\nfile = \"m.glb\"\n";
 const std::string kPart = "[[object.part]]\n";
 
+TEST(TomlPart, automatic_radii_are_bounded_by_object_and_by_part) {
+  const Scene scene =
+      read(kFile + "auto_radius = 0.5\n" + kPart + "number = 2\nauto_radius = 0.25\n" +
+           "[[object]]\nshape = \"box\"\nauto_radius = 2\n[[object]]\nshape = \"box\"\n");
+  ASSERT_EQ(scene.objects.size(), 5U);
+  EXPECT_EQ(scene.objects[0].auto_radius, 0.5);
+  EXPECT_EQ(scene.objects[1].auto_radius, 0.25);
+  EXPECT_EQ(scene.objects[2].auto_radius, 0.5);
+  EXPECT_EQ(scene.objects[3].auto_radius, 2);
+  EXPECT_EQ(scene.objects[4].auto_radius, std::nullopt);
+  EXPECT_THAT(refusal(kFile + "auto_radius = 0\n"), HasSubstr("auto_radius"));
+}
+
 TEST(TomlPart, says_what_is_otherwise_with_a_part) {
   const Scene scene =
       read("[material.brass]\nmetallic = 0.5\n" + kFile + "translate = [0, 0, 5]\nround = 0.1\n" +

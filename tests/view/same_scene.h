@@ -31,6 +31,9 @@ inline void expect_same_object(const Scene& a, const Object& in_a, const Scene& 
                                const Object& in_b) {
   EXPECT_EQ(in_a.world_from_object, in_b.world_from_object) << in_a.name;
   EXPECT_EQ(in_a.rounding.value_or(*a.rounding), in_b.rounding.value_or(*b.rounding)) << in_a.name;
+  if (std::holds_alternative<AutoRadius>(in_b.rounding.value_or(*b.rounding).radius)) {
+    EXPECT_EQ(in_a.auto_radius, in_b.auto_radius) << in_a.name;
+  }
   const Mesh &one = a.meshes[in_a.mesh.index], &other = b.meshes[in_b.mesh.index];
   EXPECT_EQ(one.positions, other.positions) << in_a.name;
   for (std::size_t t = 0; t < one.triangles.size(); ++t) {

@@ -275,6 +275,25 @@ TEST(SceneFile, of_scene_files_shows_what_the_viewer_shows_however_they_are_writ
   }
 }
 
+double first_radius_of(const Scene& scene) {
+  return prepare_stats(*prepare_scene(scene, {.threads = 1})).rounding.at(0).radius;
+}
+
+TEST(SceneFile, has_the_views_automatic_radius_whatever_the_size_of_its_picture) {
+  const TemporaryFolder folder;
+  write_models(folder);
+  const ViewModel model = open(folder / "cube.stl");
+  ViewEdits edits = first_edits(model);
+  const double radius = first_radius_of(stage_view(model, edits).scene);
+  apply_message(model, SetSize{{120, 90}}, edits);
+  Scene scene = save_and_render(model, edits);
+  EXPECT_EQ(scene.image.height_px, 90);
+  EXPECT_EQ(first_radius_of(scene), radius);
+  scene.image.height_px = 30;
+  scene.camera->position = scene.camera->position * 2;
+  EXPECT_EQ(first_radius_of(scene), radius);
+}
+
 TEST(SceneFile, can_be_opened_and_saved_again) {
   const TemporaryFolder folder;
   write_models(folder);

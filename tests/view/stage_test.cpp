@@ -114,6 +114,56 @@ TEST(ViewStage, radii_of_objects_follow_the_scenes_other_settings) {
   EXPECT_FALSE(edits.objects[0].rounding);
 }
 
+std::vector<double> radii_of(const Scene& scene) {
+  std::vector<double> radii;
+  for (const RoundingSummary& summary :
+       prepare_stats(*prepare_scene(scene, {.threads = 1})).rounding) {
+    radii.push_back(summary.radius);
+  }
+  return radii;
+}
+
+// One object is nearer to the camera than the other, so that what reads well differs.
+TEST(ViewStage, automatic_radii_are_those_of_the_first_view_whatever_is_shown_later) {
+  ViewModel model = make_model(2);
+  model.scene.rounding->radius = AutoRadius{};
+  model.scene.objects[1].world_from_object.translation = {0, 9, 0};
+  Scene rendered = model.scene;
+  stage_model(rendered, {});
+  const std::vector<double> first = radii_of(rendered);
+  ASSERT_EQ(first.size(), 2U);
+  EXPECT_NE(first[0], first[1]);
+  ViewEdits edits = first_edits(model);
+  const ViewEdits first_of_all = edits;
+  EXPECT_EQ(radii_of(stage_view(model, edits).scene), first);
+  // Below 500 pixels of height, what reads well is a larger part of it.
+  apply_message(model, SetSize{{300, 200}}, edits);
+  EXPECT_EQ(radii_of(stage_view(model, edits).scene), first);
+  SetCamera away{edits.camera};
+  away.camera.position = away.camera.position * 3;
+  apply_message(model, away, edits);
+  SetObject move;
+  move.world_from_object = Affine3d{{}, {0, -2, 0}};
+  apply_message(model, move, edits);
+  EXPECT_EQ(radii_of(stage_view(model, edits).scene), first);
+  // A number, and back to automatic.
+  SetRounding rounding;
+  rounding.radius = 0.01;
+  apply_message(model, rounding, edits);
+  EXPECT_EQ(radii_of(stage_view(model, edits).scene), std::vector<double>({0.01, 0.01}));
+  rounding.radius = AutoRadius{};
+  apply_message(model, rounding, edits);
+  EXPECT_EQ(radii_of(stage_view(model, edits).scene), first);
+  // A file that has been read again has a first view of its own, also of what was moved.
+  ViewModel smaller = model;
+  for (Vec3f& p : smaller.scene.meshes[0].positions) p = p * 0.5F;
+  smaller.scene.objects[1].world_from_object.translation = {0, 4.5, 0};
+  const ViewEdits now = carry_over(first_of_all, edits, first_edits(smaller));
+  const std::vector<double> again = radii_of(stage_view(smaller, now).scene);
+  EXPECT_NEAR(again[0], first[0] / 2, 1e-3 * first[0]);
+  EXPECT_NEAR(again[1], first[1] / 2, 1e-3 * first[1]);
+}
+
 TEST(ViewStage, what_is_refused_changes_nothing) {
   const ViewModel model = make_model(1);
   ViewEdits edits = first_edits(model);
