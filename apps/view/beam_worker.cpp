@@ -22,10 +22,11 @@ BeamWorker::~BeamWorker() {
 }
 
 // The thread lives until nothing is left to be done.
-void BeamWorker::start(Scene scene, int threads, std::function<void()> changed) {
+void BeamWorker::start(Scene scene, const BeamSettings& settings, int threads,
+                       std::function<void()> changed) {
   {
     const std::lock_guard lock(mutex_);
-    next_ = Request{std::move(scene), threads, std::move(changed)};
+    next_ = Request{std::move(scene), settings, threads, std::move(changed)};
     stop_ = true;
     status_.reset();
     png_.clear();
@@ -85,7 +86,7 @@ void BeamWorker::render(const Request& request) {
     said = progress.done;
     set_status(request, {progress.done, false, false, ""});
   };
-  RenderResult result = make_beam_renderer()->render(*prepared, options);
+  RenderResult result = make_beam_renderer(request.settings)->render(*prepared, options);
   if (stop_) return;
   result.picture.layers.clear();
   SaveOptions save;

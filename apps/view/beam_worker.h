@@ -13,6 +13,7 @@
 #include <thread>
 #include <vector>
 
+#include "arris/render.h"
 #include "arris/scene.h"
 
 namespace arris::view {
@@ -32,7 +33,7 @@ class BeamWorker {
   ~BeamWorker();
 
   // changed: called in the other thread when status() has changed.
-  void start(Scene scene, int threads, std::function<void()> changed);
+  void start(Scene scene, const BeamSettings& settings, int threads, std::function<void()> changed);
   // take_status() says that it was stopped, or, if nothing was being made, how things are.
   void stop();
   // What is new since the last call.
@@ -43,6 +44,7 @@ class BeamWorker {
  private:
   struct Request {
     Scene scene;
+    BeamSettings settings;
     int threads = 0;
     std::function<void()> changed;
   };

@@ -1,5 +1,7 @@
 #include "view/scene_file.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cstdint>
 #include <filesystem>
@@ -291,9 +293,23 @@ TomlTable make_model_table(FileNames& names) {
   return file;
 }
 
-std::vector<std::string> make_comments(const ViewModel& model, const FileNames& names) {
-  std::vector<std::string> comments{"A view of " + model.name + ", saved by arris view.",
-                                    "arris render scene.toml -o picture.png"};
+// What scene files can't say is said by the command.
+std::vector<std::string> make_comments(const ViewModel& model, const ViewEdits& edits,
+                                       const FileNames& names) {
+  std::vector<std::string> comments{"A view of " + model.name + ", saved by arris view."};
+  if (edits.shader == EdgePointShader::glossy) {
+    comments.emplace_back("Its shading is glossy: arris view scene.toml --shader glossy");
+    comments.emplace_back(
+        "arris render scene.toml --integrator edge-point --shader glossy -o picture.png");
+  } else {
+    comments.emplace_back("arris render scene.toml -o picture.png");
+  }
+  if (const int depth = model.scene.image.max_depth;
+      path_depth(model.scene.image, edits.shader) < depth) {
+    comments.push_back(fmt::format(
+        "Its shading is direct light only: max_depth is 1. It was {}, for light between surfaces.",
+        depth));
+  }
   if (names.is_relative()) {
     comments.push_back(model.is_scene_file
                            ? "Save it beside " + model.name + ", whose files it names."
@@ -332,6 +348,7 @@ std::string make_scene_file(const ViewModel& model, const ViewEdits& edits) {
   if (staged.environment) {
     if (auto* map = std::get_if<HdrEnvironment>(&*staged.environment)) map->name = names(map->name);
   }
+  staged.image.max_depth = path_depth(staged.image, edits.shader);
   TomlTable out = make_scene_table(staged);
   for (const char* key : {"animation", "material", "object"}) {
     TomlValue* own = find_toml(file, key);
@@ -340,7 +357,7 @@ std::string make_scene_file(const ViewModel& model, const ViewEdits& edits) {
       set_toml(out, key, own->data);
     }
   }
-  return write_scene_file(out, make_comments(model, names));
+  return write_scene_file(out, make_comments(model, edits, names));
 }
 
 }  // namespace arris::view

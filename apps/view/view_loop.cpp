@@ -253,11 +253,9 @@ void ViewRenderer::Loop::pick(const Input& input, const Pick& at) {
 }
 
 void ViewRenderer::Loop::start_beam() {
-  ViewEdits sharp = desired_;
-  sharp.rounding.method = RoundMethod::none;
-  Scene scene = stage_view(*view_.model, sharp, RoundMethod::none).scene;
+  StagedBeams staged = stage_beams(*view_.model, desired_);
   send("beam", beam_message({}));
-  beam_.start(std::move(scene), settings_.threads, [this] { post([] {}); });
+  beam_.start(std::move(staged.scene), staged.settings, settings_.threads, [this] { post([] {}); });
 }
 
 void ViewRenderer::Loop::poll_beam() {

@@ -365,6 +365,19 @@ StagedView stage_view(const ViewModel& model, const ViewEdits& edits,
   return out;
 }
 
+int path_depth(const ImageSettings& image, EdgePointShader shader) {
+  return shader == EdgePointShader::direct ? std::min(image.max_depth, 1) : image.max_depth;
+}
+
+StagedBeams stage_beams(const ViewModel& model, const ViewEdits& edits) {
+  ViewEdits sharp = edits;
+  sharp.rounding.method = RoundMethod::none;
+  StagedBeams out{stage_view(model, sharp, RoundMethod::none).scene, {}};
+  out.scene.image.max_depth = path_depth(out.scene.image, edits.shader);
+  out.settings.only_glossy = edits.shader == EdgePointShader::glossy;
+  return out;
+}
+
 ViewWork find_work(const ViewEdits& from, const ViewEdits& to) {
   const auto is_prepared_alike = [](const ObjectEdit& a, const ObjectEdit& b) {
     return a.visible == b.visible && a.rounding == b.rounding;

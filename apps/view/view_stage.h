@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "arris/edge_point.h"
+#include "arris/render.h"
 #include "arris/scene.h"
 #include "render/staging.h"
 #include "scene/scene_bounds.h"
@@ -87,6 +88,16 @@ struct StagedView {
 // method: instead of the edits' own, for comparison.
 StagedView stage_view(const ViewModel& model, const ViewEdits& edits,
                       std::optional<RoundMethod> method = {});
+
+// Of the view a picture of beams, which are followed as far as the view's shader does; edges are sharp.
+struct StagedBeams {
+  Scene scene;
+  BeamSettings settings;
+};
+StagedBeams stage_beams(const ViewModel& model, const ViewEdits& edits);
+
+// Vertices of a path at most, as image settings have it: EdgePointShader::direct says so of them.
+int path_depth(const ImageSettings& image, EdgePointShader shader);
 
 // What has to be done so that `to` is shown where `from` is. Each kind needs all below it.
 enum class ViewWork {

@@ -143,6 +143,8 @@ struct BeamSettings {
   BeamRule rule = BeamRule::certified;
   // Each area light is so many point lights a side, with shadows as sharp as those of point lights; 0: it is sampled.
   int light_beams = 0;
+  // Light between surfaces is followed by glossy ones, mirrors and glass alone, as by EdgePointShader::glossy.
+  bool only_glossy = false;
 };
 inline constexpr int kMostLightBeams = 16;
 // The coverage of every surface in every pixel between certain bounds (docs/beam.md). Every pixel is its square,

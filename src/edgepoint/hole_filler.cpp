@@ -288,15 +288,22 @@ void HoleFiller::fill(const EdgePointImage& image, std::span<const std::uint32_t
       }
     });
   });
-  EdgeMixer mixer(image, {before, not_of_region, planes.holes}, picture);
-  for (int y = 0; y < image.height_px; ++y) {
-    for_filled(y, [&](int word, std::uint64_t filled) {
-      for (filled &= near_edges(image, y, word); filled != 0; filled &= filled - 1) {
-        mixer.add_around(64 * word + std::countr_zero(filled), y);
-      }
-    });
-  }
-  mixer.finish(picture);
+  // Strips of rows; of what several mix, the last one's counts.
+  constexpr int kStrip = 32;
+  const std::size_t strips = (height + kStrip - 1) / kStrip;
+  std::vector<EdgeMixer> mixers(strips,
+                                EdgeMixer(image, {before, not_of_region, planes.holes}, picture));
+  parallel_for(strips, parallel, [&](std::size_t strip) {
+    const int first = int(strip) * kStrip;
+    for (int y = first; y < std::min(first + kStrip, image.height_px); ++y) {
+      for_filled(y, [&](int word, std::uint64_t filled) {
+        for (filled &= near_edges(image, y, word); filled != 0; filled &= filled - 1) {
+          mixers[strip].add_around(64 * word + std::countr_zero(filled), y);
+        }
+      });
+    }
+  });
+  for (const EdgeMixer& mixer : mixers) mixer.finish(picture);
   Grids grids(picture, planes.holes);
   for (int y = 0; y < image.height_px; ++y) {
     for (int word = 0; word < planes.holes.words(); ++word) {

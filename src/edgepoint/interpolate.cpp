@@ -122,7 +122,8 @@ HWY_INLINE ColorLanes mean_of_taps(const TapMasks& masks, std::size_t word, unsi
   const PixelLanes f;
   const auto zero = hn::Zero(f), one = hn::Set(f, 1.0F);
   auto r = zero, g = zero, b = zero, sum = zero;
-  const auto add = [&](auto tap) HWY_ATTR {
+  // Without being told, the compiler calls some of them, with the sums in memory.
+  const auto add = [&](auto tap) HWY_ATTR __attribute__((always_inline)) {
     constexpr ReachOffset kOffset = tap_offset(decltype(tap)::value);
     const ColorRow& row = rows[std::size_t(2 + kOffset.dy)];
     const auto mask = mask_from(f, masks.taps[decltype(tap)::value][word], first);

@@ -19,11 +19,12 @@ struct SamplePlanSettings {
   int width_px = 0, height_px = 0;
   std::size_t count = 0;  // about so many
   std::uint32_t frame = 0;
+  int threads = 0;  // 0: all
 };
 
 // About how many samples would leave nothing much wanted: pixels, counted the more the more they want one, from a
-// quarter of what wants one most on.
-std::size_t count_urgent(std::span<const std::uint8_t> wanted);
+// quarter of what wants one most on. threads: 0 for all.
+std::size_t count_urgent(std::span<const std::uint8_t> wanted, int threads = 0);
 
 // Offsets of pixels.
 std::vector<std::uint32_t> plan_samples(std::span<const std::uint8_t> wanted,

@@ -216,7 +216,8 @@ class BeamRenderer final : public Renderer {
     const auto start = std::chrono::steady_clock::now();
     const ImageSettings& image = scene.scene().image;
     const BeamScene beams(scene, make_eye(scene.scene()));
-    Job job{beams, options, {.max_depth = image.max_depth}, {}};
+    Job job{
+        beams, options, {.max_depth = image.max_depth, .only_glossy = settings_.only_glossy}, {}};
     job.lights = make_beam_lights(scene.geometry().lights, settings_.light_beams);
     job.knows_area_lights = settings_.light_beams > 0;
     job.needs_paths = needs_paths(scene.geometry(), job.settings, job.knows_area_lights);

@@ -317,7 +317,7 @@ class EdgePointEngine::Impl {
 
   // What shows that is wrong or missing is shaded at once, as far as the settings allow.
   [[nodiscard]] double wanted_density() const {
-    const double urgent = double(count_urgent(maker_.wanted())) / pixel_count();
+    const double urgent = double(count_urgent(maker_.wanted(), settings_.threads)) / pixel_count();
     return std::max(settings_.density, std::min(urgent, settings_.most_density));
   }
   [[nodiscard]] double planned_density() const {
@@ -341,8 +341,8 @@ class EdgePointEngine::Impl {
     if (is_still()) add_still_wishes();
     want_moved(make_pixel_view(camera, image_), moved_, wanted_);
     moved_.clear();
-    for (const std::uint32_t pixel :
-         plan_samples(wanted_, {image_.width_px, image_.height_px, count, frame_})) {
+    for (const std::uint32_t pixel : plan_samples(
+             wanted_, {image_.width_px, image_.height_px, count, frame_, settings_.threads})) {
       const PointKey seen = maker_.image().points[pixel];
       ShadePlan::Item item{pixel, seen.is_none() ? kNoPoint : seen.point(), kNoPoint};
       if (takes_paths(maker_.wanted()[pixel])) item.first_path = film_.paths_of(pixel);

@@ -610,6 +610,7 @@ TEST(SamplePlan, asks_in_proportion_to_squares_and_about_as_often_as_told) {
   for (std::uint32_t frame = 0; frame < 64; ++frame) {
     const auto plan = plan_samples(wanted, {200, 100, 500, frame});
     EXPECT_NEAR(double(plan.size()), 500, 120);
+    EXPECT_EQ(plan, plan_samples(wanted, {200, 100, 500, frame, 1}));
     all += plan.size();
     for (const std::uint32_t at : plan) left += at % 200 < 100 ? 1 : 0;
   }

@@ -74,6 +74,25 @@ TEST(beam_renderer, other_light_is_path_traced) {
   EXPECT_NEAR(mean_of(beam), mean_of(path), 0.01 * mean_of(path));
 }
 
+// Between diffuse surfaces it then follows no light: as with paths of one vertex. A mirror shows the other surfaces.
+TEST(beam_renderer, light_may_be_followed_by_glossy_surfaces_alone) {
+  Scene scene = beam_scene();
+  scene.materials = {make_lambert(0.9F), make_lambert(0.9F)};
+  scene.environment = ConstantEnvironment{{0.5F, 0.5F, 0.5F}};
+  const auto mean = [&](int max_depth, bool only_glossy) {
+    scene.image.max_depth = max_depth;
+    return mean_of(
+        render(scene, *make_beam_renderer({.only_glossy = only_glossy}), 256).picture.color);
+  };
+  const double direct = mean(1, false), all = mean(6, false);
+  EXPECT_GT(all, 1.05 * direct);
+  EXPECT_NEAR(mean(6, true), direct, 0.01 * direct);
+  scene.materials[1].glossy_mix.reset();
+  scene.materials[1].metallic = 1;
+  scene.materials[1].roughness = 0;
+  EXPECT_GT(mean(6, true), 1.02 * mean(1, false));
+}
+
 // What a torus takes away is seen from its other side; seen as a whole, it has no root that says so.
 TEST(beam_renderer, grooves_are_hollow) {
   Scene scene = beam_scene();

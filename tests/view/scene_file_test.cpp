@@ -294,6 +294,25 @@ TEST(SceneFile, has_the_views_automatic_radius_whatever_the_size_of_its_picture)
   EXPECT_EQ(first_radius_of(scene), radius);
 }
 
+TEST(SceneFile, follows_light_as_far_as_the_view) {
+  const TemporaryFolder folder;
+  write_models(folder);
+  ViewModel model = open(folder / "cube.stl");
+  model.scene.image.max_depth = 5;
+  ViewEdits edits = first_edits(model);
+  const auto depth = [&](EdgePointShader shader) {
+    apply_message(model, SetShader{shader}, edits);
+    return save_and_render(model, edits).image.max_depth;
+  };
+  EXPECT_EQ(depth(EdgePointShader::gi), 5);
+  EXPECT_EQ(depth(EdgePointShader::direct), 1);
+  EXPECT_THAT(make_scene_file(model, edits), HasSubstr("It was 5"));
+  EXPECT_EQ(depth(EdgePointShader::glossy), 5);
+  EXPECT_THAT(make_scene_file(model, edits), HasSubstr("--shader glossy -o"));
+  model.scene.image.max_depth = 0;
+  EXPECT_EQ(depth(EdgePointShader::direct), 0);
+}
+
 TEST(SceneFile, can_be_opened_and_saved_again) {
   const TemporaryFolder folder;
   write_models(folder);

@@ -164,6 +164,25 @@ TEST(ViewStage, automatic_radii_are_those_of_the_first_view_whatever_is_shown_la
   EXPECT_NEAR(again[1], first[1] / 2, 1e-3 * first[1]);
 }
 
+TEST(ViewStage, beams_are_followed_as_far_as_the_views_light) {
+  const ViewModel model = make_model(1);
+  ViewEdits edits = first_edits(model);
+  apply_message(model, SetLight{LightChoice::white, 2.0, {}}, edits);
+  const auto staged = [&](EdgePointShader shader) {
+    apply_message(model, SetShader{shader}, edits);
+    return stage_beams(model, edits);
+  };
+  const StagedBeams all = staged(EdgePointShader::gi);
+  EXPECT_EQ(all.scene.image.max_depth, model.scene.image.max_depth);
+  EXPECT_FALSE(all.settings.only_glossy);
+  EXPECT_EQ(all.scene.environment, stage_view(model, edits).scene.environment);
+  EXPECT_TRUE(beam_problems(all.scene).empty());
+  EXPECT_EQ(staged(EdgePointShader::direct).scene.image.max_depth, 1);
+  EXPECT_FALSE(staged(EdgePointShader::direct).settings.only_glossy);
+  EXPECT_TRUE(staged(EdgePointShader::glossy).settings.only_glossy);
+  EXPECT_EQ(staged(EdgePointShader::glossy).scene.image.max_depth, all.scene.image.max_depth);
+}
+
 TEST(ViewStage, what_is_refused_changes_nothing) {
   const ViewModel model = make_model(1);
   ViewEdits edits = first_edits(model);
