@@ -154,6 +154,9 @@ TEST(validate_scene, rejects_bad_rounding) {
   rounding.radius = PercentOfInradius{120};
   scene.objects[0].rounding = rounding;
   expect_problem(scene, "120% of the inradius");
+  scene.objects[0].rounding.reset();
+  scene.objects[0].auto_radius = 0;
+  expect_problem(scene, "object \"leg\": its automatic radius is 0; it must be more than 0");
 }
 
 TEST(validate_scene, rejects_bad_materials_and_pictures) {
