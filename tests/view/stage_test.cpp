@@ -115,9 +115,9 @@ TEST(ViewStage, radii_of_objects_follow_the_scenes_other_settings) {
 }
 
 std::vector<double> radii_of(const Scene& scene) {
+  const auto prepared = prepare_scene(scene, {.threads = 1});
   std::vector<double> radii;
-  for (const RoundingSummary& summary :
-       prepare_stats(*prepare_scene(scene, {.threads = 1})).rounding) {
+  for (const RoundingSummary& summary : prepare_stats(*prepared).rounding) {
     radii.push_back(summary.radius);
   }
   return radii;
