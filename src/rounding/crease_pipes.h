@@ -31,6 +31,17 @@ class CreasePipes {
   // that a ray may start on a pipe.
   [[nodiscard]] std::optional<PipeHit> first_entry(Vec3d origin, Vec3d direction, double end) const;
 
+  // Visits every part of a crease whose balls reach into the box, or which the ray meets; and some beside.
+  template <class Visit>
+  void for_each_near(Vec3d low, Vec3d high, Visit&& visit) const {
+    tree_.for_each_near(low, high, [&](std::uint32_t i) { visit(parts_[i].curve); });
+  }
+  template <class Visit>
+  void for_each_along(Vec3d origin, Vec3d direction, double end, Visit&& visit) const {
+    tree_.for_each_along(origin, direction, 0, end,
+                         [&](std::uint32_t i) { visit(parts_[i].curve); });
+  }
+
   [[nodiscard]] std::span<const CreaseCurve> creases() const { return creases_; }
   [[nodiscard]] std::size_t bytes() const;
 

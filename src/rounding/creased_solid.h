@@ -12,6 +12,7 @@
 
 #include "edges/flat_regions.h"
 #include "rounding/crease_pipes.h"
+#include "rounding/crease_shape.h"
 #include "rounding/creases.h"
 #include "rounding/solid_surface.h"
 
@@ -22,12 +23,15 @@ struct CreasedSolid {
   CreasePipes pipes;
   double radius = 0;
   double tolerance = 0;  // crease_tolerance()
+  CreaseShape shape;
 
   // Whether a point of a face, whose normal is given, is on the rounded solid.
   [[nodiscard]] bool is_kept(Vec3d x, Vec3d normal, std::uint32_t region) const;
   // From a point of the void, or of the sharp surface above it, on along a ray within the sharp solid.
   [[nodiscard]] std::optional<PipeHit> cross_void(Vec3d x, Vec3d direction) const;
-  [[nodiscard]] std::size_t bytes() const { return surface.bytes() + pipes.bytes(); }
+  [[nodiscard]] std::size_t bytes() const {
+    return surface.bytes() + pipes.bytes() + shape.bytes();
+  }
 };
 
 // A linear function of the places of a triangle, by its corners, that is positive wherever the rounding has taken it

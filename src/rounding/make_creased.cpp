@@ -2,6 +2,7 @@
 
 #include <utility>
 
+#include "rounding/crease_grooves.h"
 #include "rounding/creases.h"
 
 namespace arris {
@@ -40,8 +41,12 @@ class CreasedMaker {
         shell_index_);
     if (!creases) return std::nullopt;
     append_bands(surface, bands);
-    return CreasedSolid{std::move(surface), CreasePipes(std::move(*creases), in_.radius),
-                        in_.radius, crease_tolerance(shell_.size(), in_.radius)};
+    const double tolerance = crease_tolerance(shell_.size(), in_.radius);
+    CreaseShape shape = make_crease_shape(surface, *creases, in_.radius, tolerance);
+    CreasedSolid solid{std::move(surface), CreasePipes(std::move(*creases), in_.radius), in_.radius,
+                       tolerance, std::move(shape)};
+    solid.shape.grooves = find_grooves(solid);
+    return solid;
   }
 
  private:
