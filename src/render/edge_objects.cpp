@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <map>
+#include <optional>
 #include <span>
 #include <utility>
 #include <variant>
@@ -13,6 +14,7 @@
 #include "edges/welded_mesh.h"
 #include "render/rounded_edges.h"
 #include "render/scene_geometry.h"
+#include "rounding/crease_outline.h"
 
 namespace arris {
 namespace {
@@ -126,6 +128,53 @@ FaceVoids voids_of(const PreparedScene& prepared, std::uint32_t geometry) {
   return voids;
 }
 
+// An edge between two faces of a creased solid.
+class CreasedEdge {
+ public:
+  CreasedEdge(const Rounding::Data& data, const Affine3d& rounding_from_object,
+              const EdgeMesh& mesh, const MeshEdge& edge)
+      : mesh_(mesh), edge_(edge), face0_(data.face[edge.face0]), face1_(data.face[edge.face1]) {
+    if (face0_ == kNone || face1_ == kNone || face0_ == face1_) return;
+    const Solid& solid = data.solids[data.faces[face0_].solid];
+    if (solid.creased == kNone) return;
+    solid_ = data.creased[solid.creased].get();
+    const auto at = [&](std::uint32_t v) {
+      return transform_point(rounding_from_object, Vec3d(mesh.vertices[v])) - solid.center;
+    };
+    kept_ = {at(edge.v0),
+             at(edge.v1),
+             Vec3d(data.faces[face0_].normal),
+             Vec3d(data.faces[face1_].normal),
+             face0_,
+             face1_};
+    for (const std::uint32_t v : mesh.triangles[edge.face1]) {
+      if (v != edge.v0 && v != edge.v1) convex_ = dot(kept_.normal0, at(v) - kept_.p0) < 0;
+    }
+  }
+
+  [[nodiscard]] bool is_one() const { return solid_ != nullptr; }
+  [[nodiscard]] bool is_convex() const { return convex_; }
+  // In the mesh's space; nothing: all of it is.
+  [[nodiscard]] std::optional<std::vector<EdgeEnds>> find_kept() const {
+    const std::vector<std::pair<double, double>> parts = find_kept_parts(*solid_, kept_);
+    if (parts.size() == 1 && parts[0] == std::pair(0.0, 1.0)) return std::nullopt;
+    const Vec3d p(mesh_.vertices[edge_.v0]), q(mesh_.vertices[edge_.v1]);
+    std::vector<EdgeEnds> ends;
+    for (const auto& [from, to] : parts) {
+      ends.push_back({Vec3f(p + (q - p) * from), Vec3f(p + (q - p) * to)});
+    }
+    return ends;
+  }
+
+ private:
+  const EdgeMesh& mesh_;
+  const MeshEdge& edge_;
+  std::uint32_t face0_, face1_;
+  const CreasedSolid* solid_ = nullptr;
+  KeptEdge kept_{};
+  bool convex_ = false;
+};
+
 }  // namespace
 
 struct EdgeObjects::MeshEdges {
@@ -204,12 +253,12 @@ void EdgeObjects::find_solids(const PreparedScene& prepared, int threads,
 EdgeObjects::~EdgeObjects() = default;
 
 void EdgeObjects::set_rounded(const PreparedScene& prepared, ObjectEdges& object) {
-  object.rounded = find_rounded(prepared, object);
+  find_rounded(prepared, object);
   object.rounded_between.clear();
   object.voids = {};
   if (!object.rounded.empty()) object.voids = voids_of(prepared, object.geometry);
   for (std::uint32_t e = 0; e < object.rounded.size(); ++e) {
-    if (object.rounded[e] == RoundedEdge::no) continue;
+    if (object.rounded[e] == RoundedEdge::no || object.rounded[e] == RoundedEdge::partly) continue;
     const MeshEdge& edge = object.mesh->mesh.edges[e];
     object.rounded_between.emplace_back(std::minmax(edge.face0, edge.face1));
   }
@@ -260,11 +309,12 @@ Sphere EdgeObjects::bounding_sphere(const PreparedScene& prepared, std::uint32_t
 }
 
 // All edges between the same two planes lie on one line: an edge is rounded if one of the arcs between its faces
-// is beside it.
-std::vector<EdgeObjects::RoundedEdge> EdgeObjects::find_rounded(const PreparedScene& prepared,
-                                                                const ObjectEdges& object) {
+// is beside it. Of creased solids all convex edges are, and concave ones where a rounding ends at them.
+void EdgeObjects::find_rounded(const PreparedScene& prepared, ObjectEdges& object) {
+  object.rounded.clear();
+  object.kept.clear();
   const RoundedGeometry& rounded = prepared.rounding().geometries[object.geometry];
-  if (rounded.rounding == nullptr) return {};
+  if (rounded.rounding == nullptr) return;
   const Rounding::Data& data = rounded.rounding->data();
   const GeometryRecord& record = prepared.geometry().embree.records()[object.geometry];
   const Affine3d& world = prepared.scene().objects[record.object.index].world_from_object;
@@ -275,10 +325,24 @@ std::vector<EdgeObjects::RoundedEdge> EdgeObjects::find_rounded(const PreparedSc
     if (!arc.is_stub()) arcs.insert({std::minmax(arc.face_a, arc.face_b), &arc});
   }
   const EdgeMesh& mesh = object.mesh->mesh;
-  std::vector<RoundedEdge> out(mesh.edges.size(), RoundedEdge::no);
+  std::vector<RoundedEdge>& out = object.rounded;
+  out.assign(mesh.edges.size(), RoundedEdge::no);
   for (std::uint32_t e = 0; e < mesh.edges.size(); ++e) {
     const MeshEdge& edge = mesh.edges[e];
     if (edge.face0 >= data.face.size() || edge.face1 >= data.face.size()) continue;
+    const RoundedEdge if_rounded =
+        material_of(record, edge.face0).index != material_of(record, edge.face1).index
+            ? RoundedEdge::painted
+            : RoundedEdge::yes;
+    if (const CreasedEdge creased(data, rounding_from_object, mesh, edge); creased.is_one()) {
+      if (creased.is_convex()) {
+        out[e] = if_rounded;
+      } else if (std::optional<std::vector<EdgeEnds>> parts = creased.find_kept()) {
+        out[e] = RoundedEdge::partly;
+        object.kept.emplace(e, std::move(*parts));
+      }
+      continue;
+    }
     const auto [first, last] =
         arcs.equal_range(std::minmax(data.face[edge.face0], data.face[edge.face1]));
     for (auto it = first; it != last && out[e] == RoundedEdge::no; ++it) {
@@ -292,12 +356,9 @@ std::vector<EdgeObjects::RoundedEdge> EdgeObjects::find_rounded(const PreparedSc
       // Corners take of the edge what the arc lacks.
       const double reach = 2 * data.radius;
       if (to < -reach || from > double(arc.line.length) + reach) continue;
-      const bool painted =
-          material_of(record, edge.face0).index != material_of(record, edge.face1).index;
-      out[e] = painted ? RoundedEdge::painted : RoundedEdge::yes;
+      out[e] = if_rounded;
     }
   }
-  return out;
 }
 
 void EdgeObjects::find_solid(const Task& task, const PreparedScene& prepared, const PixelView& view,
@@ -336,9 +397,16 @@ void EdgeObjects::find_shares(const Task& task, const PreparedScene& prepared,
     for (const std::uint32_t place : found.places) {
       Vec3d a = in_world(ends[place].a), b = in_world(ends[place].b);
       if (!object.rounded.empty()) {
-        const RoundedEdge rounded = object.rounded[mesh.tree.edges(share.group)[place]];
+        const std::uint32_t edge = mesh.tree.edges(share.group)[place];
+        const RoundedEdge rounded = object.rounded[edge];
         if (rounded != RoundedEdge::no && is_seen_rounded(rounded_view, radius, (a + b) * 0.5)) {
           if (rounded == RoundedEdge::yes) continue;
+          if (rounded == RoundedEdge::partly) {
+            for (const EdgeEnds& part : object.kept.at(edge)) {
+              found.edges.push_back({Vec3f(in_world(part.a)), Vec3f(in_world(part.b))});
+            }
+            continue;
+          }
           // From within the solid the edge lies behind the surface that shows it.
           a += normalize(view.eye - a) * (2 * radius);
           b += normalize(view.eye - b) * (2 * radius);

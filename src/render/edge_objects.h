@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <map>
 #include <memory>
 #include <optional>
 #include <span>
@@ -99,13 +100,16 @@ class EdgeObjects {
 
  private:
   struct MeshEdges;
-  // painted: of different materials on its two sides, which meet where the mesh's edge is seen.
-  enum class RoundedEdge : std::uint8_t { no, yes, painted };
+  // painted: of different materials on its two sides, which meet where the mesh's edge is seen. partly: concave, and
+  // parts of it lie between sharp and rounded surface.
+  enum class RoundedEdge : std::uint8_t { no, yes, painted, partly };
+  using KeptParts = std::map<std::uint32_t, std::vector<EdgeEnds>>;
   struct ObjectEdges {
     std::shared_ptr<const MeshEdges> mesh;  // null: no edges are known
     std::shared_ptr<const CsgEdges> solid;  // null: a mesh
     std::uint32_t geometry = kNoGeometry;
     std::vector<RoundedEdge> rounded;  // of the mesh's edges; empty: none
+    KeptParts kept;                    // of those that are partly rounded
     std::vector<std::pair<std::uint32_t, std::uint32_t>> rounded_between;  // Parts'
     FaceVoids voids;                                                       // Parts'
   };
@@ -120,8 +124,7 @@ class EdgeObjects {
   void find_solids(const PreparedScene& prepared, int threads, const std::atomic<bool>* stop);
   void make_tasks();
   static void set_rounded(const PreparedScene& prepared, ObjectEdges& object);
-  static std::vector<RoundedEdge> find_rounded(const PreparedScene& prepared,
-                                               const ObjectEdges& object);
+  static void find_rounded(const PreparedScene& prepared, ObjectEdges& object);
 
   void find_solid(const Task& task, const PreparedScene& prepared, const PixelView& view,
                   int threads, FoundEdges::List& found) const;

@@ -7,6 +7,8 @@
 #include <optional>
 #include <span>
 
+#include "rounding/crease_outline.h"
+
 namespace arris {
 namespace {
 
@@ -26,17 +28,19 @@ struct Angles {
 class Outline {
  public:
   Outline(const Rounding::Data& data, const RoundedView& view, const Affine3d& world,
-          double world_radius, Vec3d eye, std::vector<RoundedTangent>& out)
+          double world_radius, Vec3d eye, VoidDepths depths, std::vector<RoundedTangent>& out)
       : data_(data),
         view_(view),
         world_(world),
         world_radius_(world_radius),
         eye_(eye),
+        depths_(depths),
         out_(out) {}
 
   void add_solid(const Solid& solid) {
     center_ = solid.center;
     const Vec3d eye = eye_ - center_;
+    if (solid.creased != kNone) return add_creased(*data_.creased[solid.creased], eye);
     arc_is_crossed_.assign(solid.arc_count, false);
     for (std::uint32_t i = 0; i < solid.arc_count; ++i) {
       const Arc& arc = data_.arcs[solid.first_arc + i];
@@ -54,11 +58,30 @@ class Outline {
     return Vec3d(data_.faces[face].normal);
   }
 
+  void add_creased(const CreasedSolid& solid, Vec3d eye) {
+    for (const CreaseLine& line : find_crease_outline(solid, eye, depths_)) {
+      emit(line.a, line.b, line.void_depth);
+    }
+    if (depths_ == VoidDepths::found) return;  // for shadows, to which only outlines matter
+    for (const CreaseGroove& groove : solid.shape.grooves) {
+      const Vec3d to_eye = eye - groove.p0;
+      if (dot(groove.normal0, to_eye) > 0 || dot(groove.normal1, to_eye) > 0) {
+        emit(groove.p0, groove.p1, 0);
+      }
+    }
+    if (view_.crease_at_depth <= 0) return;
+    for (const CreaseLine& line : find_crease_middles(solid, eye)) {
+      emit_crease(line.a, line.b, line.across);
+    }
+  }
+
   // na, nb: the normals there.
   void emit(Vec3d a, Vec3d b, Vec3d na, Vec3d nb) {
+    emit(a, b, std::max(void_depth(a, na), void_depth(b, nb)));
+  }
+  void emit(Vec3d a, Vec3d b, double depth) {
     const Vec3d p = transform_point(world_, a + center_), q = transform_point(world_, b + center_);
     if (!is_seen_rounded(view_, world_radius_, (p + q) * 0.5)) return;
-    const double depth = std::max(void_depth(a, na), void_depth(b, nb));
     out_.push_back({{Vec3f(p), Vec3f(q)}, depth * (world_radius_ / data_.radius)});
   }
 
@@ -251,6 +274,7 @@ class Outline {
   Affine3d world_;  // from the rounding's space
   double world_radius_;
   Vec3d eye_;  // in the rounding's space
+  VoidDepths depths_;
   std::vector<RoundedTangent>& out_;
   Vec3d center_;
   // Of the faces beside what is added, and of the edges between them.
@@ -258,10 +282,8 @@ class Outline {
   std::vector<bool> arc_is_crossed_;
 };
 
-}  // namespace
-
-std::vector<RoundedTangent> find_rounded_tangents(const RoundedGeometry& geometry,
-                                                  const RoundedView& view) {
+std::vector<RoundedTangent> find_tangents(const RoundedGeometry& geometry, const RoundedView& view,
+                                          VoidDepths depths) {
   const Rounding::Data& data = geometry.rounding->data();
   const Affine3d from_world =
       geometry.frame == nullptr ? Affine3d() : geometry.frame->rounding_from_world;
@@ -269,14 +291,23 @@ std::vector<RoundedTangent> find_rounded_tangents(const RoundedGeometry& geometr
   const double scale = std::cbrt(std::abs(determinant(world.linear)));
   std::vector<RoundedTangent> tangents;
   Outline outline(data, view, world, data.radius * scale, transform_point(from_world, view.eye),
-                  tangents);
+                  depths, tangents);
   for (const Solid& solid : data.solids) outline.add_solid(solid);
   return tangents;
 }
 
+}  // namespace
+
+std::vector<RoundedTangent> find_rounded_tangents(const RoundedGeometry& geometry,
+                                                  const RoundedView& view) {
+  return find_tangents(geometry, view, VoidDepths::found);
+}
+
 void find_rounded_outline(const RoundedGeometry& geometry, const RoundedView& view,
                           std::vector<WorldEdge>& edges) {
-  for (const RoundedTangent& t : find_rounded_tangents(geometry, view)) edges.push_back(t.edge);
+  for (const RoundedTangent& t : find_tangents(geometry, view, VoidDepths::none)) {
+    edges.push_back(t.edge);
+  }
 }
 
 }  // namespace arris

@@ -3,9 +3,12 @@
 //            cylinder or sphere is perpendicular to the view: on a cylinder straight lines along its axis, on a sphere
 //            arcs of a circle. The border between a face and its rounding is no discontinuity and gets no edge. But
 //            where both faces are seen and the rounding between them is narrow, its middle is an edge, the crease.
-// Guarantee  lines and arcs lie on the rounded surface of convex solids, and end where their cylinder or sphere ends
-//            (tests/render/rounded_shadow_test.cpp)
-// Limits     beside concave edges, and where roundings end in caps, a line may go on for up to a radius
+//            Creased solids (rounding/creased_solid.h) have outlines of their own (rounding/crease_outline.h), and
+//            edges along the grooves in which their roundings meet.
+// Guarantee  lines and arcs lie on the rounded surface of convex and creased solids, and end where their cylinder,
+//            pipe or sphere ends (tests/render/rounded_shadow_test.cpp, tests/render/rounded_outline_test.cpp)
+// Limits     on solids rounded locally, beside concave edges and where roundings end in caps, a line may go on for up
+//            to a radius
 // Legend     r radius; c centre or axis point; n outward normal; e eye: on the outline n·(e − c) = r
 // Derivation A ray that touches the outline at c + r n in direction d leaves the void by a face of normal m, whose
 //            plane is m·(x − c) = r, after r (1 − m·n) / (m·d); of several the first. The void of a touching solid is
