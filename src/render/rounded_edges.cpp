@@ -40,7 +40,13 @@ class Outline {
   void add_solid(const Solid& solid) {
     center_ = solid.center;
     const Vec3d eye = eye_ - center_;
-    if (solid.creased != kNone) return add_creased(*data_.creased[solid.creased], eye);
+    if (solid.creased != kNone) {
+      // None if even at its nearest it is too far away.
+      const double reach = solid.size * (world_radius_ / data_.radius);
+      const Vec3d nearest = transform_point(world_, center_) - view_.forward * reach;
+      if (!is_seen_rounded(view_, world_radius_, nearest)) return;
+      return add_creased(*data_.creased[solid.creased], eye);
+    }
     arc_is_crossed_.assign(solid.arc_count, false);
     for (std::uint32_t i = 0; i < solid.arc_count; ++i) {
       const Arc& arc = data_.arcs[solid.first_arc + i];

@@ -55,7 +55,9 @@ double distance_to(const CreaseCurve& part, Vec3d x) {
     const double slope = (bb - aa) * s * c + p * s - q * c;
     const double bend = (bb - aa) * (c * c - s * s) + p * c + q * s;
     if (!(bend > 0)) break;
+    const double before = u;
     u = std::clamp(u - slope / bend, part.u0, part.u1);
+    if (std::abs(u - before) < 1e-7) break;
   }
   return length(x - part.at(u));
 }
