@@ -7,9 +7,11 @@
 // Guarantee  a closed convex solid whose every edge turns by min_angle or more is rounded exactly: its
 //            surface is that of the union of all balls of the radius that fit inside
 //            (tests/rounding/oracle_test.cpp); so are the convex edges of closed solids of flat faces that are not
-//            convex (tests/rounding/creased_test.cpp). Const after building, safe from any number of threads.
-// Limits     concave edges stay sharp, whatever `edges` says; other solids are rounded locally. A ray that
-//            passes one of these and next leaves it by a kept face went through material: let the first hit stand.
+//            convex (tests/rounding/creased_test.cpp), and their concave ones, where all balls fit that lie outside
+//            (tests/rounding/fillets_test.cpp). Const after building, safe from any number of threads.
+// Limits     solids that aren't exact are rounded locally along convex edges, and keep their concave ones sharp. A ray
+//            that passes one of these and next leaves it by a kept face went through material: let the first hit
+//            stand, unless what it passed is Feature::fillet.
 // Cost       building is close to linear in the triangles; a kept hit costs a few multiplications. Where the radius has
 //            eaten edges of a solid, a moved hit costs linear in those left.
 // Source     Courtin, Horna, Ribardière, Poulin, Meneveaux, "Efficient Rendering of Rounded Corners and
@@ -104,7 +106,7 @@ struct Resolution {
     passed,  // the ray misses the rounded solid here: ask for the next hit of the mesh
   };
   Outcome outcome = Outcome::kept;
-  RoundedHit hit;
+  RoundedHit hit;  // passed with Feature::fillet: no surface is here, but the border between solid and fillet
 };
 
 // What could not be rounded, and why: "3 concave edges stay sharp".
@@ -157,6 +159,20 @@ class Rounding {
   // Whether a point, in the mesh's space, lies in the rounded solid. Exact solids only (see is_exact).
   // Cost: linear in the solid's faces.
   [[nodiscard]] bool contains(std::uint32_t solid, Vec3d point) const;
+
+  // Fillets of concave edges lie before the mesh. resolve() moves hits of the mesh onto them; but at their ends a ray
+  // may enter one and leave it again without meeting the mesh: hosts look whether it meets one of these boxes, in the
+  // mesh's space, and ask meet_fillet() of each that it meets.
+  struct FilletBox {
+    Vec3d low, high;
+    std::uint32_t triangle;  // beside the fillet, whose material is its own
+  };
+  [[nodiscard]] std::span<const FilletBox> fillet_boxes() const;
+  // The first crossing of the fillet's surface within ]t_min, t_max[ that is made by the part in one box; it enters if
+  // the normal is against the ray. Starts inside the rounded solid enter none first, starts outside leave none.
+  [[nodiscard]] std::optional<RoundedHit> meet_fillet(std::uint32_t box, const Ray& ray,
+                                                      double t_min, double t_max,
+                                                      RayStart start = RayStart::unknown) const;
 
   // Of a hit on an edge of the mesh; nothing for other hits. position: of the hit.
   [[nodiscard]] std::optional<EdgeBlend> blend_of(const RoundedHit& hit, Vec3d position) const;

@@ -334,6 +334,11 @@ void EdgeObjects::find_rounded(const PreparedScene& prepared, ObjectEdges& objec
         material_of(record, edge.face0).index != material_of(record, edge.face1).index
             ? RoundedEdge::painted
             : RoundedEdge::yes;
+    const std::uint32_t solid = rounded.rounding->solid_of(edge.face0);
+    if (solid != kNone && data.solids[solid].filled != kNone && mesh.is_concave(e)) {
+      out[e] = if_rounded;
+      continue;
+    }
     if (const CreasedEdge creased(data, rounding_from_object, mesh, edge); creased.is_one()) {
       if (creased.is_convex()) {
         out[e] = if_rounded;

@@ -17,6 +17,7 @@ RayStart start_of(const RoundedGeometry& g, const TraceRay& ray, const Candidate
 // A ray that left this solid outward meets it from inside: it leaves the void in which it started.
 bool leaves_own_void(const RoundedGeometry& g, const TraceRay& ray, const Candidate& c,
                      const Solid& solid) {
+  if (solid.filled != kNone) return false;  // a fillet may lie where it leaves
   if (solid.closed) return true;
   return ray.from.feature != Feature::face && !g.is_kept(c.triangle, c.u, c.v);
 }
@@ -112,13 +113,15 @@ Verdict judge(const RoundedGeometry& g, const TraceRay& ray, const Candidate& c)
   const Ray local = g.local_ray(ray.origin, ray.direction);
   verdict.entering = dot(Vec3d(face.normal), local.direction) < 0;
   RayStart start = RayStart::unknown;
-  if (!verdict.entering) {
+  if (verdict.entering) {
+    if (solid.filled != kNone) start = start_of(g, ray, c, face.solid);
+  } else {
     start = start_of(g, ray, c, face.solid);
     if (start == RayStart::outside && leaves_own_void(g, ray, c, solid)) {
       verdict.outcome = Resolution::Outcome::passed;
       return verdict;
     }
-    if (start == RayStart::outside) start = RayStart::unknown;
+    if (start == RayStart::outside && solid.filled == kNone) start = RayStart::unknown;
   }
   // From inside, a kept hit may still be that of a ray that starts in the void. From outside, it is not judged.
   const bool settled = !verdict.entering && (start == RayStart::inside || !solid.exact);
@@ -154,6 +157,23 @@ std::optional<TraceRay> skip_void(const SceneGeometry& geometry, const SceneRoun
   beyond.t_min = std::max(ray.t_min, *t);
   beyond.from = {};
   return beyond;
+}
+
+SurfaceHit make_fillet_hit(const SceneGeometry& geometry, const TraceRay& ray,
+                           const SceneFillets::Met& met) {
+  RTCRayHit query{};
+  query.hit.geomID = met.geometry;
+  query.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
+  query.hit.primID = met.triangle;
+  SurfaceHit hit;
+  fill_owner(geometry, query, hit);
+  hit.t = float(met.hit.t);
+  hit.position = Vec3f(Vec3d(ray.origin) + Vec3d(ray.direction) * met.hit.t);
+  hit.geometric_normal = hit.shading_normal = Vec3f(met.hit.normal);
+  hit.side = dot(Vec3d(ray.direction), met.hit.normal) < 0 ? Side::outside : Side::inside;
+  hit.feature = met.hit.feature;
+  hit.rounding_seen = true;
+  return hit;
 }
 
 std::optional<SurfaceHit> RoundedTrace::settle(RTCRayHit first) const {
@@ -232,7 +252,8 @@ std::optional<SurfaceHit> RoundedTrace::passed(const RTCRayHit& query,
   const std::optional<Found> next = trace_filtered(rest, &query.hit);
   if (!next) return std::nullopt;
   // Where the rounding has no surface though the ray crosses the solid, its face stands instead of a hole.
-  if (verdict.entering && leaves_kept(query, next->query)) {
+  const bool is_surface = verdict.hit.feature != Feature::fillet;
+  if (verdict.entering && is_surface && leaves_kept(query, next->query)) {
     return make_surface_hit(geometry_, ray_, query);
   }
   return finish(*next);

@@ -82,7 +82,8 @@ inline bool is_rounded(Feature feature) {
 
 // Between the sharp and the rounded surface: where rays leave a rounded edge outward.
 inline bool starts_in_void(const TraceRay& ray) {
-  return ray.from.feature != Feature::face && ray.from.side == Side::outside;
+  return ray.from.feature != Feature::face && ray.from.feature != Feature::fillet &&
+         ray.from.side == Side::outside;
 }
 
 // In a solid with neighbours: another's surface may coincide with where the ray leaves, or lie beyond it while the
@@ -99,6 +100,10 @@ inline bool starts_inside_among_others(const SceneRounding& rounding, const Trac
 // could miss another solid that touches there or reaches into the void.
 std::optional<TraceRay> skip_void(const SceneGeometry& geometry, const SceneRounding& rounding,
                                   const TraceRay& ray);
+
+// A hit on a fillet that no hit on the mesh has led to.
+SurfaceHit make_fillet_hit(const SceneGeometry& geometry, const TraceRay& ray,
+                           const SceneFillets::Met& met);
 
 // What becomes of one hit on a rounded geometry.
 Verdict judge(const RoundedGeometry& g, const TraceRay& ray, const Candidate& c);

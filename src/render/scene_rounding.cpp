@@ -66,6 +66,7 @@ class Maker {
                  });
     for (Task& task : tasks_) attach(task);
     end_if_stopped(options_.stop);
+    if (out_.any) out_.fillets = SceneFillets(out_.geometries);
     if (out_.any) find_void_neighbors(geometry_, out_, options_.threads, before_);
     out_.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     return std::move(out_);

@@ -13,6 +13,7 @@
 
 #include "arris/render.h"
 #include "arris/rounding.h"
+#include "render/scene_fillets.h"
 #include "render/scene_geometry.h"
 #include "rounding/rounding_data.h"
 
@@ -91,6 +92,7 @@ struct SceneRounding {
   std::vector<std::shared_ptr<const SolidPoints>> points;
   std::vector<std::vector<std::uint32_t>> near;  // geometries whose boxes come near its voids
   bool any = false;
+  SceneFillets fillets;
   std::vector<BevelShader> shaders;  // by geometry; empty if none has one
   // What was built, for PrepareStats.
   double seconds = 0;

@@ -39,6 +39,21 @@ void filter_shadow(const RTCFilterFunctionNArguments* args) {
   if (context->transmittance > 0) args->valid[0] = 0;
 }
 
+float transmittance_of_fillets(const SceneGeometry& geometry, const SceneRounding& rounding,
+                               TraceRay ray) {
+  float transmittance = 1;
+  while (const auto met = rounding.fillets.meet(rounding.geometries, ray, ray.t_max)) {
+    const SurfaceHit hit = make_fillet_hit(geometry, ray, *met);
+    if (!geometry.materials[hit.material.index].translucent) return 0;
+    transmittance *= 1 - eval_opacity(geometry.scene.materials[hit.material.index],
+                                      geometry.scene.textures, hit.uv);
+    if (!(transmittance > 0) || !(hit.t > ray.t_min)) break;
+    ray.t_min = hit.t;
+    ray.from = {};
+  }
+  return transmittance;
+}
+
 // Embree's context with the one geometry to be met.
 struct ObjectContext {
   RTCIntersectContext base;  // first, so that a pointer to it is a pointer to this
@@ -89,6 +104,12 @@ std::optional<SurfaceHit> PreparedScene::intersect(const TraceRay& ray) const {
       hit = RoundedTrace(*geometry_, rounding_, way).settle(*first);
     }
   }
+  if (!rounding_.fillets.is_empty()) {
+    const double end = hit ? double(hit->t) : double(ray.t_max);
+    if (const auto met = rounding_.fillets.meet(rounding_.geometries, ray, end)) {
+      hit = make_fillet_hit(*geometry_, ray, *met);
+    }
+  }
   if (!rounding_.shaders.empty() && hit) [[unlikely]] {
     const BevelShader& shader = rounding_.shaders[hit->geometry];
     if (shader.delta > 0) bend_normal(*this, shader, way.direction, *hit);
@@ -106,7 +127,9 @@ float PreparedScene::transmittance(const TraceRay& ray) const {
   }
   RTCRay query = make_ray(way);
   rtcOccluded1(geometry_->embree.handle(), &context.base, &query);
-  return query.tfar < 0 ? 0.0F : context.transmittance;
+  if (query.tfar < 0) return 0;
+  if (rounding_.fillets.is_empty()) return context.transmittance;
+  return context.transmittance * transmittance_of_fillets(*geometry_, rounding_, ray);
 }
 
 }  // namespace arris

@@ -93,9 +93,25 @@ CreasePipes::CreasePipes(std::vector<CreaseCurve> creases, double radius)
       parts_(parts_of(creases_)),
       tree_(boxes_of(parts_, radius)) {}
 
+// From one t of a ray towards another, either way: where it first comes within r of the curve.
+std::optional<double> CreasePipes::step_to_arc(const CreaseCurve& curve, Vec3d origin,
+                                               Vec3d direction, double from, double to) const {
+  constexpr int kMostSteps = 200;
+  const double way = to < from ? -1 : 1;
+  const double speed = way * length(direction);
+  double t = from;
+  for (int step = 0; step <= kMostSteps; ++step) {
+    const Vec3d x = origin + direction * t;
+    const double left = length(x - curve.at(nearest_parameter(curve, x))) - r_;
+    if (left <= 1e-9 * r_) return t;
+    t += left / speed;
+    if ((t - to) * way > 0) break;
+  }
+  return std::nullopt;
+}
+
 std::optional<PipeHit> CreasePipes::first_entry(Vec3d origin, Vec3d direction, double end) const {
   std::optional<PipeHit> best;
-  const double speed = length(direction);
   tree_.for_each_along(origin, direction, 0, end, [&](std::uint32_t i) {
     const Part& part = parts_[i];
     const CreaseCurve& curve = part.curve;
@@ -103,22 +119,14 @@ std::optional<PipeHit> CreasePipes::first_entry(Vec3d origin, Vec3d direction, d
     const std::optional<Span> span = meet_capsule(origin, direction, p0, p1, r_ + part.bulge);
     if (!span || span->t1 < 0 || span->t0 > end) return;
     double t = std::max(span->t0, 0.0);
-    double u = 0;
-    if (curve.is_line) {
-      u = nearest_parameter(curve, origin + direction * t);
-    } else {
-      const double last = std::min(span->t1, end);
-      constexpr int kMostSteps = 200;
-      for (int step = 0;; ++step) {
-        const Vec3d x = origin + direction * t;
-        u = nearest_parameter(curve, x);
-        const double left = length(x - curve.at(u)) - r_;
-        if (left <= 1e-9 * r_) break;
-        t += left / speed;
-        if (t > last || step == kMostSteps) return;
-      }
+    if (!curve.is_line) {
+      const std::optional<double> met =
+          step_to_arc(curve, origin, direction, t, std::min(span->t1, end));
+      if (!met) return;
+      t = *met;
     }
     if (t > end) return;
+    const double u = nearest_parameter(curve, origin + direction * t);
     const Vec3d normal = normalize(origin + direction * t - curve.at(u));
     if (dot(normal, direction) >= 0) return;
     end = t;
@@ -126,6 +134,36 @@ std::optional<PipeHit> CreasePipes::first_entry(Vec3d origin, Vec3d direction, d
     best = PipeHit{t, normal, !is_inner};
   });
   return best;
+}
+
+std::optional<PipeSpan> CreasePipes::span_of(std::uint32_t index, Vec3d origin,
+                                             Vec3d direction) const {
+  const Part& part = parts_[index];
+  const CreaseCurve& curve = part.curve;
+  const std::optional<Span> span =
+      meet_capsule(origin, direction, curve.at(curve.u0), curve.at(curve.u1), r_ + part.bulge);
+  if (!span) return std::nullopt;
+  const auto place_at = [&](double t) {
+    const Vec3d x = origin + direction * t;
+    const double u = nearest_parameter(curve, x);
+    return PipePlace{t, u, normalize(x - curve.at(u))};
+  };
+  if (curve.is_line) return PipeSpan{place_at(span->t0), place_at(span->t1)};
+  const std::optional<double> t0 = step_to_arc(curve, origin, direction, span->t0, span->t1);
+  if (!t0) return std::nullopt;
+  const std::optional<double> t1 = step_to_arc(curve, origin, direction, span->t1, *t0);
+  if (!t1) return std::nullopt;
+  return PipeSpan{place_at(*t0), place_at(*t1)};
+}
+
+bool CreasePipes::holds(Vec3d x, double distance) const {
+  bool found = false;
+  tree_.for_each_near(x, x, [&](std::uint32_t i) {
+    if (found) return;
+    const CreaseCurve& curve = parts_[i].curve;
+    found = length_squared(x - curve.at(nearest_parameter(curve, x))) < distance * distance;
+  });
+  return found;
 }
 
 std::size_t CreasePipes::bytes() const {

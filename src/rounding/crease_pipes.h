@@ -23,6 +23,15 @@ struct PipeHit {
   bool at_end = false;  // on the ball around an end, or around an arc
 };
 
+// Where a ray crosses the surface of one part of the pipes.
+struct PipePlace {
+  double t = 0, u = 0;  // of the ray, and of the part's curve
+  Vec3d normal;         // unit, from the crease
+};
+struct PipeSpan {
+  PipePlace in, out;
+};
+
 class CreasePipes {
  public:
   CreasePipes(std::vector<CreaseCurve> creases, double radius);
@@ -41,6 +50,16 @@ class CreasePipes {
     tree_.for_each_along(origin, direction, 0, end,
                          [&](std::uint32_t i) { visit(parts_[i].curve); });
   }
+  // The pipes in parts: segments, and short parts of arcs.
+  [[nodiscard]] std::size_t part_count() const { return parts_.size(); }
+  [[nodiscard]] const CreaseCurve& curve_of(std::uint32_t part) const { return parts_[part].curve; }
+  // How far it lies above its chord.
+  [[nodiscard]] double bulge_of(std::uint32_t part) const { return parts_[part].bulge; }
+  // The places between which a ray's whole line is within r of a part.
+  [[nodiscard]] std::optional<PipeSpan> span_of(std::uint32_t part, Vec3d origin,
+                                                Vec3d direction) const;
+  // Whether a crease is nearer to x than `distance`, at most r.
+  [[nodiscard]] bool holds(Vec3d x, double distance) const;
 
   [[nodiscard]] std::span<const CreaseCurve> creases() const { return creases_; }
   [[nodiscard]] std::size_t bytes() const;
@@ -54,6 +73,9 @@ class CreasePipes {
 
   static std::vector<Part> parts_of(std::span<const CreaseCurve> creases);
   static std::vector<Box> boxes_of(std::span<const Part> parts, double radius);
+
+  [[nodiscard]] std::optional<double> step_to_arc(const CreaseCurve& curve, Vec3d origin,
+                                                  Vec3d direction, double from, double to) const;
 
   std::vector<CreaseCurve> creases_;
   double r_;

@@ -85,9 +85,9 @@ bool CreasedSolid::is_kept(Vec3d x, Vec3d normal, std::uint32_t region) const {
   return !surface.is_near(x - normal * radius, radius - tolerance, region);
 }
 
-std::optional<PipeHit> CreasedSolid::cross_void(Vec3d x, Vec3d direction) const {
-  return pipes.first_entry(x, direction,
-                           surface.first_exit(x, direction, tolerance / length(direction)));
+VoidCrossing CreasedSolid::cross_void(Vec3d x, Vec3d direction) const {
+  const SolidSurface::Exit exit = surface.first_exit(x, direction, tolerance / length(direction));
+  return {pipes.first_entry(x, direction, exit.t), exit};
 }
 
 std::vector<DepthAtCorners> find_depths(const SolidSurface& surface,

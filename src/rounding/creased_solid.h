@@ -18,6 +18,12 @@
 
 namespace arris {
 
+// Where a ray in the void comes to the rounded surface, or where it leaves the sharp solid.
+struct VoidCrossing {
+  std::optional<PipeHit> met;
+  SolidSurface::Exit exit;
+};
+
 struct CreasedSolid {
   SolidSurface surface;
   CreasePipes pipes;
@@ -28,7 +34,7 @@ struct CreasedSolid {
   // Whether a point of a face, whose normal is given, is on the rounded solid.
   [[nodiscard]] bool is_kept(Vec3d x, Vec3d normal, std::uint32_t region) const;
   // From a point of the void, or of the sharp surface above it, on along a ray within the sharp solid.
-  [[nodiscard]] std::optional<PipeHit> cross_void(Vec3d x, Vec3d direction) const;
+  [[nodiscard]] VoidCrossing cross_void(Vec3d x, Vec3d direction) const;
   [[nodiscard]] std::size_t bytes() const {
     return surface.bytes() + pipes.bytes() + shape.bytes();
   }

@@ -42,10 +42,13 @@ class CreasedMaker {
     if (!creases) return std::nullopt;
     append_bands(surface, bands);
     const double tolerance = crease_tolerance(shell_.size(), in_.radius);
-    CreaseShape shape = make_crease_shape(surface, *creases, in_.radius, tolerance);
+    CreaseShape shape;
+    if (in_.with_outlines) {
+      shape = make_crease_shape(surface, *creases, in_.radius, tolerance);
+    }
     CreasedSolid solid{std::move(surface), CreasePipes(std::move(*creases), in_.radius), in_.radius,
                        tolerance, std::move(shape)};
-    solid.shape.grooves = find_grooves(solid);
+    if (in_.with_outlines) solid.shape.grooves = find_grooves(solid);
     return solid;
   }
 

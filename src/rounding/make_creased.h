@@ -21,6 +21,7 @@ struct CreasedInput {
   const FlatRegions& regions;
   std::span<const EdgeKind> kinds;  // per half-edge
   double radius;
+  bool with_outlines = true;  // CreasedSolid::shape; else empty
 };
 
 // Nothing, and no bands: something about the shell is open or curved, or the radius takes away a whole edge.

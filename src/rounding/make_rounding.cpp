@@ -3,6 +3,7 @@
 #include <cmath>
 #include <cstdio>
 #include <numeric>
+#include <optional>
 #include <string>
 
 #include "arris/error.h"
@@ -11,6 +12,7 @@
 #include "rounding/crease_network.h"
 #include "rounding/eroded_polyhedron.h"
 #include "rounding/make_creased.h"
+#include "rounding/outside_mesh.h"
 #include "rounding/rounding_data.h"
 #include "rounding/rounding_parts.h"
 
@@ -93,8 +95,9 @@ class RoundingMaker {
       report.boundary_edges += kind == EdgeKind::boundary ? 1 : 0;
       report.nonmanifold_edges += kind == EdgeKind::nonmanifold ? 1 : 0;
     }
-    if (options_.edges == RoundEdges::convex || options_.edges == RoundEdges::both) return;
-    // Concave edges alone: nothing that this kernel rounds.
+    if (options_.edges == RoundEdges::convex) return;
+    if (report.concave_edges > 0) outside_ = turn_inside_out(welded_, regions_, kinds_);
+    if (options_.edges == RoundEdges::both) return;
     for (std::uint32_t h = 0; h < count; ++h) {
       if (kinds_[h] != EdgeKind::convex) continue;
       kinds_[h] = EdgeKind::smooth;
@@ -171,6 +174,7 @@ class RoundingMaker {
       ++cavities_;
       return;
     }
+    make_filled(s);
     const bool creased = make_creased(s);
     const bool convex_solid = solid.convex && solid.closed;
     ShellNetwork network = builder.build(s, convex_solid);
@@ -209,6 +213,55 @@ class RoundingMaker {
     solid.creased = std::uint32_t(data_->creased.size());
     data_->creased.push_back(std::make_unique<const CreasedSolid>(std::move(*made)));
     return true;
+  }
+
+  // The space outside, rounded along its convex edges.
+  void make_filled(std::uint32_t s) {
+    Solid& solid = data_->solids[s];
+    if (keep_networks_ || !outside_ || solid.convex) return;
+    const CreasedInput input{mesh_,           outside_->welded, outside_->regions,
+                             outside_->kinds, options_.radius,  false};
+    std::optional<CreasedSolid> made = make_creased_solid(input, s, bands_);
+    if (!made) return;
+    solid.filled = std::uint32_t(data_->filled.size());
+    data_->filled.push_back(std::make_unique<const FilledSolid>(std::move(*made)));
+    const std::uint64_t edges = concave_edges_of(s);
+    filled_edges_ += edges;
+    data_->report.rounded_edges += edges;
+    const FilledSolid& filled = *data_->filled.back();
+    for (std::uint32_t i = 0; i < filled.fillets.part_count(); ++i) {
+      const Box box = filled.fillets.box_of(i);
+      const std::uint32_t triangle = triangle_near(filled.outside, (box.low + box.high) * 0.5);
+      if (triangle == kNone) continue;
+      data_->fillet_boxes.push_back({box.low + solid.center, box.high + solid.center, triangle});
+      data_->fillet_parts.push_back({s, i});
+    }
+  }
+
+  [[nodiscard]] std::uint64_t concave_edges_of(std::uint32_t s) const {
+    const Shell& shell = welded_.shells[s];
+    std::uint64_t count = 0;
+    for (std::uint32_t i = 0; i < shell.triangle_count; ++i) {
+      const std::uint32_t t = welded_.triangles_by_shell[shell.first_triangle + i];
+      for (std::uint32_t h = 3 * t; h < 3 * t + 3; ++h) {
+        count += kinds_[h] == EdgeKind::concave && h < welded_.twin[h] ? 1 : 0;
+      }
+    }
+    return count;
+  }
+
+  // One of the caller's, of the nearest face.
+  [[nodiscard]] std::uint32_t triangle_near(const CreasedSolid& solid, Vec3d x) const {
+    std::uint32_t region = kNone;
+    double least = INFINITY;
+    const Vec3d reach(2 * solid.radius);
+    solid.surface.for_each_near(x - reach, x + reach, [&](const SurfaceTriangle& t) {
+      const double distance = length(x - nearest_on_triangle(x, t));
+      if (distance >= least || triangle_begin_[t.region] == triangle_begin_[t.region + 1]) return;
+      least = distance;
+      region = t.region;
+    });
+    return region == kNone ? kNone : triangles_[triangle_begin_[region]];
   }
 
   [[nodiscard]] std::span<const Plane> planes_of(const Solid& solid) const {
@@ -398,7 +451,8 @@ class RoundingMaker {
          "convex edges stay sharp: only concave edges are to be rounded");
     note(cavities_, "hollow inside another solid: its edges stay sharp",
          "hollows inside other solids: their edges stay sharp");
-    note(report.concave_edges, "concave edge stays sharp", "concave edges stay sharp");
+    note(report.concave_edges - filled_edges_, "concave edge stays sharp",
+         "concave edges stay sharp");
     note(report.nonmanifold_edges, "non-manifold edge stays sharp",
          "non-manifold edges stay sharp");
     note(shortened_, "edge stays sharp: the radius needs more length than it has",
@@ -412,6 +466,7 @@ class RoundingMaker {
   [[nodiscard]] std::uint64_t creased_bytes() const {
     std::uint64_t sum = 0;
     for (const auto& solid : data_->creased) sum += solid->bytes();
+    for (const auto& solid : data_->filled) sum += solid->outside.bytes() + solid->fillets.bytes();
     return sum;
   }
 
@@ -419,6 +474,7 @@ class RoundingMaker {
     const auto of = [](const auto& v) { return v.size() * sizeof(v[0]); };
     return of(data_->band_begin) + of(data_->bands) + of(data_->face) + of(data_->faces) +
            of(data_->arcs) + of(data_->nodes) + of(data_->links) + of(data_->solids) +
+           of(data_->fillet_boxes) + of(data_->fillet_parts) +
            (data_->tree ? data_->tree->bytes() : 0) + creased_bytes();
   }
 
@@ -429,12 +485,14 @@ class RoundingMaker {
   WeldedMesh welded_;
   FlatRegions regions_;
   std::vector<EdgeKind> kinds_;
+  std::optional<OutsideMesh> outside_;  // if concave edges are to be rounded, and there are any
   std::vector<std::uint32_t> triangle_begin_, triangles_;
   std::vector<TriangleBand> bands_;
   std::vector<std::uint32_t> walls_;
   bool keep_networks_ = false;
   std::vector<ShellNetwork> networks_;
   std::uint64_t cavities_ = 0, shortened_ = 0, narrow_ = 0, too_small_ = 0, unasked_ = 0;
+  std::uint64_t filled_edges_ = 0;
 };
 
 }  // namespace

@@ -129,7 +129,7 @@ std::uint32_t deepest_band(const Rounding::Data& data, const MeshHit& hit) {
   float depth = 0;
   for (const Band* b = data.bands.data() + data.band_begin[hit.triangle]; b != last; ++b) {
     const float d = b->depth(u, v);
-    if (d <= depth) continue;
+    if (d <= depth || b->arc == kNone) continue;
     depth = d;
     arc = b->arc;
   }
@@ -173,7 +173,7 @@ std::optional<Place> detect_by_bands(const Rounding::Data& data, const Solid& so
                                      const MeshHit& hit, Vec3d x) {
   const Band* const last = data.bands.data() + data.band_begin[hit.triangle + 1];
   for (const Band* b = data.bands.data() + data.band_begin[hit.triangle]; b != last; ++b) {
-    if (b->depth(float(hit.u), float(hit.v)) <= 0) continue;
+    if (b->arc == kNone || b->depth(float(hit.u), float(hit.v)) <= 0) continue;
     if (const std::optional<Place> place =
             place_of(data, solid, b->arc, data.face[hit.triangle], x))
       return place;
@@ -207,30 +207,105 @@ std::optional<Place> detect_by_tree(const Rounding::Data& data, const Solid& sol
   return place_of(data, solid, deepest->arc, face_index, x);
 }
 
-// A solid of any shape. From inside the ray is looked at backwards.
-Resolution resolve_creased(const CreasedSolid& solid, const Ray& ray, const FaceHit& at,
-                           Vec3d normal, RayStart start, Vec3d center) {
-  Resolution out;
-  out.hit = {at.t, normal};
-  const bool entering = dot(normal, at.direction) < 0;
-  std::optional<PipeHit> met;
-  if (!entering && start == RayStart::outside) {
-    met = solid.cross_void(ray.origin - center, at.direction);
-    out.outcome = Resolution::Outcome::passed;
-    if (!met) return out;
-    out.hit.t = met->t / at.scale;
-  } else {
-    if (solid.is_kept(at.x, normal, at.face)) return out;
-    met = solid.cross_void(at.x, entering ? at.direction : -at.direction);
-    out.outcome = Resolution::Outcome::passed;
-    if (!met) return out;
-    out.hit.t = entering ? at.t + met->t / at.scale : at.t - met->t / at.scale;
+// One solid's rounding, whatever its shape, as hits on its mesh need it. Either part may be missing.
+class CreasedHit {
+ public:
+  CreasedHit(const Rounding::Data& data, const Solid& solid, const FaceHit& at, RayStart start)
+      : data_(data),
+        solid_(solid),
+        at_(at),
+        start_(start),
+        normal_(data.faces[at.face].normal),
+        entering_(dot(normal_, at.direction) < 0),
+        inner_(solid.creased == kNone ? nullptr : data.creased[solid.creased].get()),
+        filled_(solid.filled == kNone ? nullptr : data.filled[solid.filled].get()) {}
+
+  // Nothing: the local network decides.
+  [[nodiscard]] std::optional<Resolution> resolve(const Ray& ray) const {
+    const bool covered = is_covered(at_.x, at_.face);
+    const bool kept = inner_ == nullptr || inner_->is_kept(at_.x, normal_, at_.face);
+    if (covered && (entering_ || kept)) return through_fillet(kept);
+    if (inner_ == nullptr) return std::nullopt;
+    if (!entering_ && start_ == RayStart::outside) return out_of_void(ray, covered);
+    if (kept) return make(Resolution::Outcome::kept, at_.t, normal_, Feature::face);
+    return entering_ ? into_void() : from_inside();
   }
-  out.outcome = Resolution::Outcome::moved;
-  out.hit.normal = met->normal;
-  out.hit.feature = met->at_end ? Feature::corner : Feature::edge;
-  return out;
-}
+
+ private:
+  // Whether a fillet lies on the face.
+  [[nodiscard]] bool is_covered(Vec3d x, std::uint32_t face) const {
+    return filled_ != nullptr &&
+           !filled_->outside.is_kept(x, -Vec3d(data_.faces[face].normal), face);
+  }
+
+  static Resolution make(Resolution::Outcome outcome, double t, Vec3d normal, Feature feature) {
+    Resolution out;
+    out.outcome = outcome;
+    out.hit = {t, normal, feature};
+    return out;
+  }
+  static Feature feature_of(const PipeHit& met) {
+    return met.at_end ? Feature::corner : Feature::edge;
+  }
+
+  // From the fillet into the solid, or the other way.
+  [[nodiscard]] Resolution through_fillet(bool kept) const {
+    const std::optional<PipeHit> met =
+        filled_->outside.cross_void(at_.x, entering_ ? -at_.direction : at_.direction).met;
+    const double along = met ? met->t / at_.scale : 0;
+    const double t = entering_ ? at_.t - along : at_.t + along;
+    if (met && t >= 0) return make(Resolution::Outcome::moved, t, -met->normal, Feature::fillet);
+    if (entering_ && start_ == RayStart::outside) {
+      // From the fillet's far side into the void, or, by rounding errors, from its surface: then the face stands.
+      return kept ? make(Resolution::Outcome::kept, at_.t, normal_, Feature::face) : into_void();
+    }
+    if (!kept) return make(Resolution::Outcome::moved, at_.t, -normal_, Feature::fillet);
+    return make(Resolution::Outcome::passed, at_.t, normal_, Feature::fillet);
+  }
+
+  [[nodiscard]] Resolution out_of_void(const Ray& ray, bool covered) const {
+    const Vec3d origin = ray.origin - solid_.center;
+    if (const auto met = inner_->cross_void(origin, at_.direction).met) {
+      return make(Resolution::Outcome::moved, met->t / at_.scale, met->normal, feature_of(*met));
+    }
+    // Where the fillet has no thickness, a ray from its surface may start behind the face.
+    if (covered && at_.t * at_.scale > inner_->tolerance) {
+      return make(Resolution::Outcome::moved, at_.t, -normal_, Feature::fillet);
+    }
+    return make(Resolution::Outcome::passed, at_.t, normal_, Feature::face);
+  }
+
+  // Beyond the void there may be a fillet.
+  [[nodiscard]] Resolution into_void() const {
+    const auto [met, exit] = inner_->cross_void(at_.x, at_.direction);
+    if (met) {
+      return make(Resolution::Outcome::moved, at_.t + met->t / at_.scale, met->normal,
+                  feature_of(*met));
+    }
+    if (exit.region != kNone && is_covered(at_.x + at_.direction * exit.t, exit.region)) {
+      return make(Resolution::Outcome::moved, at_.t + exit.t / at_.scale,
+                  -Vec3d(data_.faces[exit.region].normal), Feature::fillet);
+    }
+    return make(Resolution::Outcome::passed, at_.t, normal_, Feature::face);
+  }
+
+  // Looked at backwards.
+  [[nodiscard]] Resolution from_inside() const {
+    const auto met = inner_->cross_void(at_.x, -at_.direction).met;
+    if (!met) return make(Resolution::Outcome::passed, at_.t, normal_, Feature::face);
+    return make(Resolution::Outcome::moved, at_.t - met->t / at_.scale, met->normal,
+                feature_of(*met));
+  }
+
+  const Rounding::Data& data_;
+  const Solid& solid_;
+  const FaceHit& at_;
+  RayStart start_;
+  Vec3d normal_;
+  bool entering_;
+  const CreasedSolid* inner_;
+  const FilledSolid* filled_;
+};
 
 // Where the walk ended.
 void finish(Resolution& out, const std::optional<WalkHit>& met, const FaceHit& at, bool entering) {
@@ -288,9 +363,9 @@ Resolution Rounding::resolve(const Ray& ray, const MeshHit& hit, RayStart start)
     }
   }
   const FaceHit at = locate(*data_, ray, hit);
-  if (solid.creased != kNone) {
-    return resolve_creased(*data_->creased[solid.creased], ray, at, Vec3d(face.normal), start,
-                           solid.center);
+  if (solid.creased != kNone || solid.filled != kNone) {
+    const std::optional<Resolution> found = CreasedHit(*data_, solid, at, start).resolve(ray);
+    if (found) return *found;
   }
   out.hit = {at.t, Vec3d(face.normal)};
   if (!entering && solid.exact && start != RayStart::inside) {
@@ -352,6 +427,21 @@ bool Rounding::contains(std::uint32_t solid_index, Vec3d point) const {
   const Solid& solid = data_->solids[solid_index];
   const Vec3d x = point - solid.center;
   return is_in_solid(*data_, solid, x) && !is_in_void(*data_, solid, x);
+}
+
+std::span<const Rounding::FilletBox> Rounding::fillet_boxes() const {
+  return data_->fillet_boxes;
+}
+
+std::optional<RoundedHit> Rounding::meet_fillet(std::uint32_t box, const Ray& ray, double t_min,
+                                                double t_max, RayStart start) const {
+  const Data::FilletPart& place = data_->fillet_parts[box];
+  const Solid& solid = data_->solids[place.solid];
+  const std::optional<FilletCrossing> met = data_->filled[solid.filled]->fillets.meet(
+      place.part, ray.origin - solid.center, ray.direction,
+      {t_min, t_max, start != RayStart::inside, start != RayStart::outside});
+  if (!met) return std::nullopt;
+  return RoundedHit{met->t, met->normal, Feature::fillet};
 }
 
 std::optional<EdgeBlend> Rounding::blend_of(const RoundedHit& hit, Vec3d position) const {

@@ -9,12 +9,14 @@
 
 #include <cstdint>
 #include <memory>
+#include <utility>
 #include <vector>
 
 #include "arris/rounding.h"
 #include "edges/flat_regions.h"
 #include "rounding/creased_solid.h"
 #include "rounding/detection_tree.h"
+#include "rounding/fillets.h"
 
 namespace arris {
 
@@ -22,7 +24,7 @@ namespace arris {
 // face away. 16 bytes, so that the four bands of a box's triangle fit a cache line.
 struct Band {
   float c0, cu, cv;
-  std::uint32_t arc;  // kNone: of a creased solid
+  std::uint32_t arc;  // kNone: of a creased or filled solid
 
   [[nodiscard]] float depth(float u, float v) const { return c0 + cu * u + cv * v; }
 };
@@ -80,6 +82,17 @@ struct Solid {
   bool exact = false;    // closed, convex, every edge rounded: the surface is that of opening(P)
   bool rewired = false;  // E lost features of P: the arc nearest to a point must be searched for
   std::uint32_t creased = kNone;  // index: rounded exactly though it isn't convex
+  std::uint32_t filled = kNone;   // index: its concave edges have fillets
+};
+
+// A solid's fillets, from the space outside it.
+struct FilledSolid {
+  CreasedSolid outside;
+  Fillets fillets;
+
+  explicit FilledSolid(CreasedSolid made) : outside(std::move(made)), fillets(outside) {}
+  FilledSolid(const FilledSolid&) = delete;
+  FilledSolid& operator=(const FilledSolid&) = delete;
 };
 
 struct Rounding::Data {
@@ -95,6 +108,13 @@ struct Rounding::Data {
   std::vector<Solid> solids;
   std::unique_ptr<const DetectionTree> tree;  // with Detection::kd_tree
   std::vector<std::unique_ptr<const CreasedSolid>> creased;
+  std::vector<std::unique_ptr<const FilledSolid>> filled;
+  // Parts of all fillets, and whose they are.
+  struct FilletPart {
+    std::uint32_t solid, part;
+  };
+  std::vector<Rounding::FilletBox> fillet_boxes;
+  std::vector<FilletPart> fillet_parts;
   RoundingReport report;
 };
 

@@ -5,6 +5,8 @@
 #include <limits>
 #include <utility>
 
+#include "edges/welded_mesh.h"
+
 namespace arris {
 namespace {
 
@@ -63,9 +65,9 @@ bool SolidSurface::is_near(Vec3d x, double distance, std::uint32_t but_region) c
   return found;
 }
 
-double SolidSurface::first_exit(Vec3d origin, Vec3d direction, double after) const {
-  double exit = std::numeric_limits<double>::infinity();
-  tree_.for_each_along(origin, direction, after, exit, [&](std::uint32_t i) {
+SolidSurface::Exit SolidSurface::first_exit(Vec3d origin, Vec3d direction, double after) const {
+  Exit exit{std::numeric_limits<double>::infinity(), kNone};
+  tree_.for_each_along(origin, direction, after, exit.t, [&](std::uint32_t i) {
     const SurfaceTriangle& t = triangles_[i];
     const Vec3d normal = cross(t.p1 - t.p0, t.p2 - t.p0);
     const double across = dot(normal, direction);
@@ -75,7 +77,7 @@ double SolidSurface::first_exit(Vec3d origin, Vec3d direction, double after) con
     const double w2 = side_of(origin, direction, t.p0, t.p1);
     if (w0 < 0 || w1 < 0 || w2 < 0) return;
     const double at = dot(normal, t.p0 - origin) / across;
-    if (at > after) exit = std::min(exit, at);
+    if (at > after && at < exit.t) exit = {at, t.region};
   });
   return exit;
 }

@@ -25,9 +25,13 @@ class SolidSurface {
   // Whether a triangle of another region is nearer to x than `distance`.
   [[nodiscard]] bool is_near(Vec3d x, double distance, std::uint32_t but_region) const;
 
-  // The t > after at which the ray first leaves through a triangle; infinity if it doesn't. A ray through an edge meets
-  // both triangles.
-  [[nodiscard]] double first_exit(Vec3d origin, Vec3d direction, double after) const;
+  // The t > after at which the ray first leaves through a triangle, and its region; infinity if it doesn't. A ray
+  // through an edge meets both triangles.
+  struct Exit {
+    double t;
+    std::uint32_t region;
+  };
+  [[nodiscard]] Exit first_exit(Vec3d origin, Vec3d direction, double after) const;
 
   // Visits every triangle whose box reaches into this one, and some beside it.
   template <class Visit>

@@ -2,6 +2,7 @@
 // What       P minus its opening is what no ball of the radius within P covers. margin(x) says by how much the largest
 //            ball that covers x and fits, of those of this radius, fits: the most that the distance to the surface
 //            can be within r of x, less r. Above 0, x is in opening(P); below, it is in the void.
+//            For the space outside P, what no ball outside it covers is a fillet.
 // Limits     a search by chance: the margin may come out too small, by little
 // Cost       thousands of distances to all triangles
 #pragma once
@@ -17,23 +18,26 @@
 
 namespace arris::oracle {
 
+enum class Space { inside, outside };
+
 class BallOracle {
  public:
-  BallOracle(const MeshView& mesh, double radius) : r_(radius) {
+  BallOracle(const MeshView& mesh, double radius, Space space = Space::inside)
+      : r_(radius), sign_(space == Space::inside ? 1 : -1) {
     for (const Triangle& t : mesh.triangles) {
       triangles_.push_back(
           {Vec3d(mesh.positions[t[0]]), Vec3d(mesh.positions[t[1]]), Vec3d(mesh.positions[t[2]])});
     }
   }
 
-  // To the surface; negative outside.
+  // To the surface; negative where the space is not.
   [[nodiscard]] double depth(Vec3d x) const {
     double least = INFINITY, angle = 0;
     for (const Corners& t : triangles_) {
       least = std::min(least, length(x - nearest(x, t)));
       angle += solid_angle(x, t);
     }
-    return angle > 2 * kPi ? least : -least;
+    return sign_ * (angle > 2 * kPi ? least : -least);
   }
 
   template <class Random>
@@ -99,7 +103,7 @@ class BallOracle {
   }
 
   std::vector<Corners> triangles_;
-  double r_;
+  double r_, sign_;
 };
 
 }  // namespace arris::oracle

@@ -1,12 +1,14 @@
 // rounded_ray.h — the smallest host of the rounding kernel
 // What       meets a ray with every triangle in double precision, then asks the kernel hit by hit, as a
-//            renderer does, until a hit stands or the mesh has no more
+//            renderer does, until a hit stands or the mesh has no more; fillets that come before it are asked for, too
 // Guarantee  a ray through a shared edge or vertex never slips between the triangles: the side of an edge
 //            is computed from its end points in one fixed order
 // Cost       linear in the triangles
 #pragma once
 
 #include <algorithm>
+#include <cstdint>
+#include <limits>
 #include <optional>
 #include <set>
 #include <span>
@@ -57,12 +59,12 @@ struct RoundedMesh {
   const Rounding* rounding = nullptr;
 };
 
-// The first point of one rounded mesh on the ray. A ray whose first hit is from inside may have started in the
-// void between the sharp and the rounded surface, and enter the rounded solid before it leaves: that hit is
+// The first point of one rounded mesh on the ray, but for ends of fillets. A ray whose first hit is from inside may have
+// started in the void between the sharp and the rounded surface, and enter the rounded solid before it leaves: that hit is
 // resolved even where the surface is kept. A ray that passes a solid that isn't exact, and next leaves it by what is
 // kept, went through material: there the first hit stands.
-inline std::optional<RoundedHit> trace(const Ray& ray, const RoundedMesh& object,
-                                       RayStart start = RayStart::unknown) {
+inline std::optional<RoundedHit> trace_hits(const Ray& ray, const RoundedMesh& object,
+                                            RayStart start) {
   std::set<std::uint32_t> passed;  // exact solids that the ray has missed for good
   std::optional<MeshHit> entry;    // the last that was passed, into a solid that isn't exact
   const auto stands = [&](const MeshHit& hit) {
@@ -84,12 +86,24 @@ inline std::optional<RoundedHit> trace(const Ray& ray, const RoundedMesh& object
       case Resolution::Outcome::passed:
         if (object.rounding->is_exact(solid))
           passed.insert(solid);
-        else if (!from_inside)
+        else if (!from_inside && resolution.hit.feature != Feature::fillet)
           entry = hit;
         break;
     }
   }
   return std::nullopt;
+}
+
+// The first point of one rounded mesh on the ray.
+inline std::optional<RoundedHit> trace(const Ray& ray, const RoundedMesh& object,
+                                       RayStart start = RayStart::unknown) {
+  std::optional<RoundedHit> first = trace_hits(ray, object, start);
+  const auto boxes = object.rounding->fillet_boxes();
+  for (std::uint32_t i = 0; i < boxes.size(); ++i) {
+    const double end = first ? first->t : std::numeric_limits<double>::infinity();
+    if (const auto met = object.rounding->meet_fillet(i, ray, 0, end, start)) first = met;
+  }
+  return first;
 }
 
 // The first point of several rounded meshes on the ray.

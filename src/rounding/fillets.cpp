@@ -1,0 +1,128 @@
+#include "rounding/fillets.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace arris {
+namespace {
+
+// How far beside the plane of two contacts a direction may lie.
+constexpr double kBeside = 1e-4;
+// Weights of contacts may be this much below 0: fillets and faces meet without a gap.
+constexpr double kLeastWeight = -1e-6;
+// Relative to the radius: nearer than this to its surface, a ball does not hold a point.
+constexpr double kOnBall = 1e-6;
+
+// n = α a + β b, up to kBeside, with weights that count.
+bool is_between(Vec3d n, Vec3d a, Vec3d b) {
+  const double c = dot(a, b), s2 = 1 - c * c;
+  if (!(s2 > 1e-12)) return false;
+  const double na = dot(n, a), nb = dot(n, b);
+  const double alpha = (na - c * nb) / s2, beta = (nb - c * na) / s2;
+  if (alpha < kLeastWeight || beta < kLeastWeight) return false;
+  return length_squared(n - a * alpha - b * beta) < kBeside * kBeside;
+}
+
+bool is_between(Vec3d n, Vec3d a, Vec3d b, Vec3d c) {
+  const double volume = dot(a, cross(b, c));
+  if (std::abs(volume) < 1e-9) return false;
+  return dot(n, cross(b, c)) / volume >= kLeastWeight &&
+         dot(n, cross(c, a)) / volume >= kLeastWeight &&
+         dot(n, cross(a, b)) / volume >= kLeastWeight;
+}
+
+}  // namespace
+
+Fillets::Fillets(const CreasedSolid& outside) : outside_(&outside) {
+  for (std::uint32_t i = 0; i < outside.pipes.part_count(); ++i) {
+    const CreaseCurve& curve = outside.pipes.curve_of(i);
+    const Contacts contacts = contacts_at(curve.at(0.5 * (curve.u0 + curve.u1)));
+    // Around a corner the balls touch nothing else: the seam of two offsets, not a crease.
+    if (contacts.count < 2) continue;
+    parts_.push_back(
+        {i, curve.is_line && contacts.count == 2, contacts.toward[0], contacts.toward[1]});
+  }
+}
+
+Fillets::Contacts Fillets::contacts_at(Vec3d c) const {
+  Contacts contacts;
+  const double most = outside_->radius + outside_->tolerance;
+  // What lies within the tolerance of where a ball touches a plane is one contact.
+  const double same = 16 * outside_->tolerance / outside_->radius;
+  outside_->surface.for_each_near(c - Vec3d(most), c + Vec3d(most), [&](const SurfaceTriangle& t) {
+    const Vec3d foot = nearest_on_triangle(c, t) - c;
+    if (length_squared(foot) > most * most || contacts.count == kMostContacts) return;
+    const Vec3d toward = normalize(foot);
+    for (std::size_t i = 0; i < contacts.count; ++i) {
+      if (length_squared(contacts.toward[i] - toward) < same) return;
+    }
+    contacts.toward[contacts.count++] = toward;
+  });
+  return contacts;
+}
+
+Box Fillets::box_of(std::uint32_t part) const {
+  const std::uint32_t pipe = parts_[part].pipe;
+  const CreaseCurve& curve = outside_->pipes.curve_of(pipe);
+  const double r = outside_->radius;
+  Box box{Vec3d(INFINITY), Vec3d(-INFINITY), part};
+  // Between contacts the surface rises above their chord.
+  double least_cosine = 1;
+  for (const double u : {curve.u0, 0.5 * (curve.u0 + curve.u1), curve.u1}) {
+    const Contacts contacts = contacts_at(curve.at(u));
+    for (std::size_t i = 0; i < contacts.count; ++i) {
+      const Vec3d p = curve.at(u) + contacts.toward[i] * r;
+      box.low = min(box.low, p);
+      box.high = max(box.high, p);
+      for (std::size_t j = 0; j < i; ++j) {
+        least_cosine = std::min(least_cosine, dot(contacts.toward[i], contacts.toward[j]));
+      }
+    }
+  }
+  const double half_angle = 0.5 * std::acos(std::clamp(least_cosine, -1.0, 1.0));
+  const Vec3d rise(r * (1 - std::cos(half_angle)) + 2 * outside_->pipes.bulge_of(part) +
+                   kOnBall * r);
+  return {box.low - rise, box.high + rise, part};
+}
+
+bool Fillets::begins_at(const Part& part, const PipePlace& place) const {
+  const CreaseCurve& curve = outside_->pipes.curve_of(part.pipe);
+  const Vec3d c = curve.at(place.u);
+  const bool is_end = place.u <= curve.u0 || place.u >= curve.u1;
+  if (part.has_sides && !is_end) {
+    if (!is_between(place.normal, part.side_a, part.side_b)) return false;
+  } else {
+    const Contacts contacts = contacts_at(c);
+    const auto& g = contacts.toward;
+    bool found = false;
+    for (std::size_t i = 0; i < contacts.count; ++i) {
+      for (std::size_t j = i + 1; j < contacts.count && !found; ++j) {
+        found = is_between(place.normal, g[i], g[j]);
+        for (std::size_t k = j + 1; k < contacts.count && !found; ++k) {
+          found = is_between(place.normal, g[i], g[j], g[k]);
+        }
+      }
+    }
+    if (!found) return false;
+  }
+  const double r = outside_->radius;
+  return !outside_->pipes.holds(c + place.normal * r, r * (1 - kOnBall));
+}
+
+std::optional<FilletCrossing> Fillets::meet(std::uint32_t index, Vec3d origin, Vec3d direction,
+                                            const Wanted& wanted) const {
+  const Part& part = parts_[index];
+  const std::optional<PipeSpan> span = outside_->pipes.span_of(part.pipe, origin, direction);
+  if (!span) return std::nullopt;
+  const auto counts = [&](const PipePlace& place) {
+    return place.t > wanted.t_min && place.t < wanted.t_max && begins_at(part, place);
+  };
+  // Into the ball is out of the fillet.
+  if (wanted.exits && counts(span->in)) return FilletCrossing{span->in.t, -span->in.normal, false};
+  if (wanted.entries && counts(span->out)) {
+    return FilletCrossing{span->out.t, -span->out.normal, true};
+  }
+  return std::nullopt;
+}
+
+}  // namespace arris

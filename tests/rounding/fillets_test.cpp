@@ -1,0 +1,229 @@
+// fillets_test.cpp — fillets of concave edges against the definition of rounding
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <random>
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "arris/rounding.h"
+#include "rounding/rounding_data.h"
+#include "support/ball_oracle.h"
+#include "support/creased_solids.h"
+#include "support/rounded_ray.h"
+
+namespace arris::oracle {
+namespace {
+
+struct Tally {
+  int rays = 0, fillets = 0, from_ends = 0;
+  int wrong = 0;
+  std::vector<std::string> examples;
+};
+
+// Rays at one solid's edges and corners.
+class Shooter {
+ public:
+  Shooter(const CreasedCase& solid, RoundEdges edges, std::uint64_t seed)
+      : mesh_(solid.mesh.view()),
+        name_(solid.mesh.name),
+        r_(solid.radius),
+        edges_(edges),
+        inside_(mesh_, r_),
+        outside_(mesh_, r_, Space::outside),
+        rng_(seed) {
+    RoundingOptions options;
+    options.radius = r_;
+    options.edges = edges;
+    options.min_angle = radians(5);
+    rounding_ = std::make_unique<const Rounding>(make_rounding(mesh_, options, name_));
+  }
+
+  [[nodiscard]] const Rounding& rounding() const { return *rounding_; }
+  [[nodiscard]] RoundedMesh object() const { return {mesh_, rounding_.get()}; }
+
+  // Near an edge, near a corner, or in a fillet's box; some along an edge.
+  Ray make_ray(int i) {
+    const auto& positions = mesh_.positions;
+    const Triangle& t = mesh_.triangles[pick(mesh_.triangles.size())];
+    const Vec3d p(positions[t[0]]), q(positions[t[1]]);
+    Vec3d target = p;
+    if (i % 2 == 0) target += (q - p) * uniform(rng_, 0, 1);
+    if (i % 3 != 0) {
+      const auto boxes = rounding_->fillet_boxes();
+      const auto& box = boxes[pick(boxes.size())];
+      target = {uniform(rng_, box.low.x, box.high.x), uniform(rng_, box.low.y, box.high.y),
+                uniform(rng_, box.low.z, box.high.z)};
+    } else {
+      target += direction() * (uniform(rng_, 0, 1.5) * r_);
+    }
+    Vec3d d = direction();
+    if (i % 4 == 1) d = normalize(normalize(p - q) + direction() * 0.4);
+    return {target - d * (20 * r_), d};
+  }
+
+  void shoot(int rays, Tally& tally) {
+    for (int i = 0; i < rays; ++i) judge(make_ray(i), tally);
+  }
+
+  [[nodiscard]] double depth(Vec3d x) const { return inside_.depth(x); }
+
+  // By how much x is in the rounded solid, relative to the radius: above 0 surely, below 0 surely not.
+  double inside_by(Vec3d x) {
+    const double depth = inside_.depth(x);
+    if (depth < 0) return -outside_.margin(x, rng_) / r_;
+    return edges_ == RoundEdges::concave ? depth / r_ : inside_.margin(x, rng_) / r_;
+  }
+
+ private:
+  std::size_t pick(std::size_t count) {
+    return std::uniform_int_distribution<std::size_t>(0, count - 1)(rng_);
+  }
+  Vec3d direction() {
+    for (;;) {
+      const Vec3d v{uniform(rng_, -1, 1), uniform(rng_, -1, 1), uniform(rng_, -1, 1)};
+      const double l = length(v);
+      if (l > 0.1 && l <= 1) return v / l;
+    }
+  }
+
+  void judge(const Ray& ray, Tally& tally) {
+    if (inside_by(ray.origin) > -0.1) return;
+    const auto hit = trace(ray, object());
+    ++tally.rays;
+    const auto at = [&](double t) { return ray.origin + ray.direction * t; };
+    std::string problem;
+    const double close = 0.003;
+    // Nothing before the hit. Rays are shot from 20 r away at what is within 1.5 r.
+    const double end = std::min(hit ? hit->t : INFINITY, 24 * r_);
+    for (double t = 16 * r_ + uniform(rng_, 0, 0.4) * r_; t < end - 0.02 * r_; t += 0.4 * r_) {
+      if (const double by = inside_by(at(t)); by > close)
+        problem = fmt::format("goes through material by {:.3g} r at {:.6g}", by, t);
+    }
+    if (hit) {
+      const Vec3d step = hit->normal * (0.01 * r_);
+      // A fillet thinner than the step may lie above what is taken away, or be seen from there.
+      const bool is_thin =
+          hit->feature == Feature::fillet &&
+          (inside_.depth(at(hit->t) - step) > 0 || std::abs(inside_.depth(at(hit->t))) < 1e-4 * r_);
+      if (const double by = inside_by(at(hit->t) - step); by < -close && !is_thin)
+        problem = fmt::format("hits nothing, by {:.3g} r", -by);
+      if (const double by = inside_by(at(hit->t) + step); by > close)
+        problem = fmt::format("hits within, by {:.3g} r", by);
+      if (hit->feature == Feature::fillet) {
+        ++tally.fillets;
+        tally.from_ends += trace_hits(ray, object(), RayStart::unknown).has_value() ? 0 : 1;
+      }
+    }
+    if (problem.empty()) return;
+    ++tally.wrong;
+    if (tally.examples.size() < 4) {
+      tally.examples.push_back(fmt::format(
+          "{}: o ({:.9g}, {:.9g}, {:.9g}) d ({:.9g}, {:.9g}, {:.9g}), {} {:.6g}: {}", name_,
+          ray.origin.x, ray.origin.y, ray.origin.z, ray.direction.x, ray.direction.y,
+          ray.direction.z, hit ? name_of(hit->feature) : "nothing", hit ? hit->t : 0, problem));
+    }
+  }
+
+  MeshView mesh_;
+  std::string name_;
+  double r_;
+  RoundEdges edges_;
+  BallOracle inside_, outside_;
+  Random rng_;
+  std::unique_ptr<const Rounding> rounding_;
+};
+
+void expect_agreement(RoundEdges edges) {
+  Tally all;
+  for (const CreasedCase& solid : make_creased_cases()) {
+    SCOPED_TRACE(solid.mesh.name);
+    Shooter shooter(solid, edges, 11);
+    ASSERT_FALSE(shooter.rounding().data().filled.empty());
+    Tally tally;
+    shooter.shoot(60, tally);
+    EXPECT_GT(tally.fillets, 2);
+    all.rays += tally.rays;
+    all.wrong += tally.wrong;
+    all.fillets += tally.fillets;
+    all.from_ends += tally.from_ends;
+    all.examples.insert(all.examples.end(), tally.examples.begin(), tally.examples.end());
+  }
+  EXPECT_GT(all.from_ends, 3);
+  EXPECT_LE(all.wrong * 300, all.rays) << fmt::format("{}", fmt::join(all.examples, "\n"));
+}
+
+TEST(Fillets, rays_agree_with_the_balls_that_fit_outside) {
+  expect_agreement(RoundEdges::concave);
+}
+
+TEST(Fillets, both_kinds_of_edges_agree_with_the_balls_that_fit) {
+  expect_agreement(RoundEdges::both);
+}
+
+// Glass: from within the solid or the fillet, the border between the two is none.
+TEST(Fillets, rays_from_inside_leave_where_others_enter) {
+  int all = 0, from_solid = 0;
+  for (const CreasedCase& solid : make_creased_cases()) {
+    SCOPED_TRACE(solid.mesh.name);
+    Shooter shooter(solid, RoundEdges::concave, 3);
+    const double r = solid.radius;
+    int left = 0;
+    for (int i = 0; i < 4000 && left < 30; ++i) {
+      const Ray ray = shooter.make_ray(i);
+      const auto hit = trace(ray, shooter.object());
+      if (!hit || hit->feature != Feature::fillet || dot(hit->normal, ray.direction) > -0.2) {
+        continue;
+      }
+      const double way = (i % 2 == 0 ? 0.05 : 0.6) * r;
+      const auto at = [&](double t) { return ray.origin + ray.direction * t; };
+      bool is_inside = true;
+      for (double part = 0.1; part < 1.05; part += 0.1) {
+        is_inside = is_inside && shooter.inside_by(at(hit->t + part * way)) > 0.01;
+      }
+      if (!is_inside) continue;
+      const Vec3d start = at(hit->t + way);
+      const auto out = trace({start, -ray.direction}, shooter.object(), RayStart::inside);
+      ASSERT_TRUE(out.has_value()) << i;
+      EXPECT_NEAR(out->t, way, 1e-5 * r) << i;
+      EXPECT_GT(dot(out->normal, hit->normal), 0.999) << i;
+      ++left;
+      from_solid += shooter.depth(start) > 0 ? 1 : 0;
+    }
+    EXPECT_GT(left, 5);
+    all += left;
+  }
+  EXPECT_GT(from_solid, all / 10);
+  EXPECT_LT(from_solid, all - all / 10);
+}
+
+// What is reflected, and shadow rays.
+TEST(Fillets, rays_that_leave_a_fillet_do_not_meet_it_where_they_start) {
+  for (const CreasedCase& solid : make_creased_cases()) {
+    SCOPED_TRACE(solid.mesh.name);
+    Shooter shooter(solid, RoundEdges::both, 7);
+    int left = 0;
+    for (int i = 0; i < 1500; ++i) {
+      const Ray ray = shooter.make_ray(i);
+      const auto hit = trace(ray, shooter.object());
+      if (!hit || hit->feature != Feature::fillet) continue;
+      if (dot(ray.direction, hit->normal) > -1e-3) continue;
+      const Vec3d x = ray.origin + ray.direction * hit->t;
+      const Vec3d away = ray.direction - hit->normal * (2 * dot(ray.direction, hit->normal));
+      const auto next = trace({x, away}, shooter.object(), RayStart::outside);
+      EXPECT_TRUE(!next || next->t > 1e-4 * solid.radius)
+          << i << " to " << name_of(next->feature) << " at " << next->t << ", cosine "
+          << dot(away, next->normal);
+      ++left;
+    }
+    EXPECT_GT(left, 50);
+  }
+}
+
+}  // namespace
+}  // namespace arris::oracle
