@@ -16,9 +16,9 @@ OptionGroup rounding_group(const std::string& default_radius) {
         "small enough for the part (default: " +
             default_radius + ", what the file says for scenes)"},
        {"--round-edges", "convex|concave|both",
-        "which edges (default: the file's, else convex); concave ones stay sharp in this version, "
-        "and a note says "
-        "so"},
+        "which edges (default: the file's, else convex); concave ones get fillets where the solid "
+        "is "
+        "closed, and a note counts those that stay sharp"},
        {"--round-min-angle", "DEG",
         "edges that turn by less are part of a smooth surface (default: the file's, else 30); STEP "
         "files say themselves which edges are sharp"},

@@ -302,7 +302,7 @@ class OutlineFinder {
     const Vec3d d = normalize(p - eye_);
     double most = 0;
     for (const Vec3d way : {d, -d}) {
-      most = std::max(most, std::min(solid_.surface.first_exit(p, way, 0), kFarthest * r_));
+      most = std::max(most, std::min(solid_.surface.first_exit(p, way, 0).t, kFarthest * r_));
     }
     return most;
   }

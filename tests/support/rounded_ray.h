@@ -59,10 +59,10 @@ struct RoundedMesh {
   const Rounding* rounding = nullptr;
 };
 
-// The first point of one rounded mesh on the ray, but for ends of fillets. A ray whose first hit is from inside may have
-// started in the void between the sharp and the rounded surface, and enter the rounded solid before it leaves: that hit is
-// resolved even where the surface is kept. A ray that passes a solid that isn't exact, and next leaves it by what is
-// kept, went through material: there the first hit stands.
+// The first point of one rounded mesh on the ray, but for ends of fillets. A ray whose first hit is from inside may
+// have started in the void between the sharp and the rounded surface, and enter the rounded solid before it leaves:
+// that hit is resolved even where the surface is kept. A ray that passes a solid that isn't exact, and next leaves it
+// by what is kept, went through material: there the first hit stands.
 inline std::optional<RoundedHit> trace_hits(const Ray& ray, const RoundedMesh& object,
                                             RayStart start) {
   std::set<std::uint32_t> passed;  // exact solids that the ray has missed for good
