@@ -126,7 +126,8 @@ int main(int argc, char** argv) {
   Arguments arguments;
   CLI::App app(
       "Rounded edges: time, memory and rays affected for every method on the paper's scenes");
-  app.add_option("--scenes", arguments.scenes, "scene1 scene2 scene3 blocks cornell")
+  app.add_option("--scenes", arguments.scenes,
+                 "scene1 scene2 scene3 blocks cornell bracket boss pockets brackets")
       ->delimiter(',');
   app.add_option("--methods", arguments.methods,
                  "none, exact, mesh:N, shader; ratios are to the first")

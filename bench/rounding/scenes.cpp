@@ -8,6 +8,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "rounding/cell_pieces.h"
 #include "rounding/convex_pieces.h"
 
 namespace arris::bench {
@@ -295,13 +296,61 @@ BenchScene make_cornell() {
   return bench;
 }
 
+// --- Solids with concave edges ------------------------------------------------------------------
+
+// Seen from the front, the side and above, from as far as `distance`.
+BenchScene make_creased(BenchScene bench, const Piece& piece, double distance) {
+  Mesh mesh = named_mesh(bench.name);
+  append(mesh, piece, {});
+  add_object(bench.scene, std::move(mesh), MaterialId{1});
+  Vec3d low = piece.vertices[0], high = low;
+  for (const Vec3d& p : piece.vertices) {
+    low = min(low, p);
+    high = max(high, p);
+  }
+  const Vec3d middle = (low + high) * 0.5;
+  bench.scene.camera = Camera{.position = middle + normalize(Vec3d(0.9, -1.6, 1.2)) * distance,
+                              .target = middle,
+                              .fov_deg = 30};
+  round_all(bench);
+  return bench;
+}
+
+BenchScene make_one_bracket() {
+  return make_creased({"bracket", "Bracket", make_stage(120, {}), 0.15}, make_bracket(3, 1, 2), 8);
+}
+
+BenchScene make_one_boss() {
+  return make_creased({"boss", "Boss", make_stage(120, {}), 0.15}, make_boss(), 9);
+}
+
+BenchScene make_pocket_plate() {
+  return make_creased({"pockets", "Pockets", make_stage(240, {}), 0.12}, make_pockets(20), 70);
+}
+
+// 3,000 in one mesh.
+BenchScene make_brackets() {
+  BenchScene bench{"brackets", "Brackets", make_stage(240, {}), kSceneRadius};
+  Random random(5);
+  const Piece piece = make_bracket(0.9, 0.3, 0.6);
+  Mesh mesh = named_mesh("brackets");
+  for (int i = 0; i < 3000; ++i) {
+    Affine3d placed{random.rotation(), {}};
+    placed.translation = {(i % 60 - 29.5) * 1.5, (double(i) / 60 - 24.5) * 1.5,
+                          0.002 - lowest_z(piece, placed)};
+    append(mesh, piece, placed);
+  }
+  add_object(bench.scene, std::move(mesh), MaterialId{1});
+  bench.scene.camera = Camera{.position = {4, -50, 22}, .target = {0, -18, 0}, .fov_deg = 30};
+  round_all(bench);
+  return bench;
+}
+
 const std::vector<std::pair<std::string, std::function<BenchScene()>>>& makers() {
   static const std::vector<std::pair<std::string, std::function<BenchScene()>>> kMakers{
-      {"scene1", make_scene1},
-      {"scene2", make_scene2},
-      {"scene3", make_scene3},
-      {"blocks", make_blocks},
-      {"cornell", make_cornell}};
+      {"scene1", make_scene1}, {"scene2", make_scene2},        {"scene3", make_scene3},
+      {"blocks", make_blocks}, {"cornell", make_cornell},      {"bracket", make_one_bracket},
+      {"boss", make_one_boss}, {"pockets", make_pocket_plate}, {"brackets", make_brackets}};
   return kMakers;
 }
 

@@ -1,7 +1,8 @@
 // scenes.h — the paper's test scenes, made anew from a seed
 // What       Scenes 1 to 3: fields and heaps of small convex solids with 42k, 103k and 252k triangles; Blocks:
 //            726 toy bricks with knobs that touch one another, 276k triangles; a Cornell box with rounded
-//            inside corners; a camera move over Blocks
+//            inside corners; a bracket, a plate with a boss, one with 400 pockets, and 3,000 brackets, which have
+//            concave edges; a camera move over Blocks
 // Guarantee  same name, same bytes: own random numbers, no library distributions
 // Source     Courtin et al., "Efficient Rendering of Rounded Corners and Edges for Convex Objects", Fig. 8, 9,
 //            11 and 12; the scenes themselves are not published, so these are of the same kind and size

@@ -76,6 +76,8 @@ struct RoundedHit {
   std::uint32_t arc = ~std::uint32_t{0};  // of an edge, for blend_of()
   // The arc between whose ends the ray crossed the void, or entered it to pass; ~0: it came by a corner.
   std::uint32_t crossed = ~std::uint32_t{0};
+  // The solid of a hit on an edge or corner, where it has no arcs, for blend_of().
+  std::uint32_t solid = ~std::uint32_t{0};
 };
 
 // How a point of an edge's cylinder lies between the two faces beside it: normal = Σ weight · face_normal. A host that
@@ -106,7 +108,8 @@ struct Resolution {
     passed,  // the ray misses the rounded solid here: ask for the next hit of the mesh
   };
   Outcome outcome = Outcome::kept;
-  RoundedHit hit;  // passed with Feature::fillet: no surface is here, but the border between solid and fillet
+  RoundedHit
+      hit;  // passed with Feature::fillet: no surface is here, but the border between solid and fillet
 };
 
 // What could not be rounded, and why: "3 concave edges stay sharp".
@@ -174,7 +177,7 @@ class Rounding {
                                                       double t_min, double t_max,
                                                       RayStart start = RayStart::unknown) const;
 
-  // Of a hit on an edge of the mesh; nothing for other hits. position: of the hit.
+  // Of a hit on an edge; nothing for other hits, and where faces meet without smooth edges. position: of the hit.
   [[nodiscard]] std::optional<EdgeBlend> blend_of(const RoundedHit& hit, Vec3d position) const;
 
   // The solid (connected component) of a triangle, and whether it is exact (see Guarantee): once a ray has

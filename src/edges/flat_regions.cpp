@@ -129,14 +129,6 @@ class RegionBuilder {
   std::vector<std::uint32_t> seeds_, members_;
 };
 
-bool contains(const Shell& outer, const Shell& inner) {
-  for (int axis = 0; axis < 3; ++axis) {
-    if (inner.bounds_min[axis] <= outer.bounds_min[axis]) return false;
-    if (inner.bounds_max[axis] >= outer.bounds_max[axis]) return false;
-  }
-  return true;
-}
-
 bool is_room(const WeldedMesh& mesh, const FlatRegions& regions, const Shell& shell,
              double min_angle) {
   bool any_concave = false;
@@ -206,7 +198,7 @@ std::vector<std::uint32_t> turn_inverted_shells(WeldedMesh& mesh, const FlatRegi
     bool inverted = false;
     if (shell.closed) {
       inverted = shell.volume < 0 && std::ranges::none_of(mesh.shells, [&](const Shell& other) {
-                   return other.closed && other.volume > 0 && contains(other, shell);
+                   return can_hold(other, shell);
                  });
     } else {
       inverted = is_room(mesh, regions, shell, min_angle);
@@ -220,6 +212,15 @@ std::vector<std::uint32_t> turn_inverted_shells(WeldedMesh& mesh, const FlatRegi
 
 bool is_cavity(const Shell& shell) {
   return shell.closed && shell.volume < 0 && !shell.turned;
+}
+
+bool can_hold(const Shell& outer, const Shell& inner) {
+  if (!outer.closed || outer.volume <= 0) return false;
+  for (int axis = 0; axis < 3; ++axis) {
+    if (inner.bounds_min[axis] <= outer.bounds_min[axis]) return false;
+    if (inner.bounds_max[axis] >= outer.bounds_max[axis]) return false;
+  }
+  return true;
 }
 
 }  // namespace arris

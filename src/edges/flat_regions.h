@@ -46,5 +46,7 @@ std::vector<std::uint32_t> turn_inverted_shells(WeldedMesh& mesh, const FlatRegi
                                                 double min_angle);
 // A closed shell of negative volume that turn_inverted_shells() left: a hollow in another solid.
 bool is_cavity(const Shell& shell);
+// Whether a shell's bounds have the inner one's within: it may be a hollow of this solid.
+bool can_hold(const Shell& outer, const Shell& inner);
 
 }  // namespace arris

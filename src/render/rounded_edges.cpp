@@ -38,6 +38,7 @@ class Outline {
         out_(out) {}
 
   void add_solid(const Solid& solid) {
+    if (solid.hollow) return;  // drawn with the shell around it
     center_ = solid.center;
     const Vec3d eye = eye_ - center_;
     if (solid.creased != kNone) {

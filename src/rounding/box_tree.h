@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -23,6 +24,11 @@ struct Box {
   Vec3d low, high;
   std::uint32_t item;  // what is in it
 };
+
+// Boxes around a triangle: one, or some around parts of it where one would be mostly empty, as around a long thin
+// triangle askew. No part is shorter than `shortest`.
+void append_triangle_boxes(const std::array<Vec3d, 3>& corners, double shortest, std::uint32_t item,
+                           std::vector<Box>& boxes);
 
 class BoxTree {
  public:
@@ -49,7 +55,8 @@ class BoxTree {
   template <class Visit>
   void for_each_along(Vec3d origin, Vec3d direction, double begin, double& end,
                       Visit&& visit) const {
-    for_each_where([&](const Node& node) { return is_met(node, origin, direction, begin, end); },
+    const Vec3d inverse(1 / direction.x, 1 / direction.y, 1 / direction.z);
+    for_each_where([&](const Node& node) { return is_met(node, origin, inverse, begin, end); },
                    visit);
   }
   [[nodiscard]] std::size_t bytes() const {
@@ -82,7 +89,21 @@ class BoxTree {
     }
     return true;
   }
-  static bool is_met(const Node& node, Vec3d origin, Vec3d direction, double begin, double end);
+  // inverse: one over the direction, by axis; infinite across it.
+  static bool is_met(const Node& node, Vec3d origin, Vec3d inverse, double begin, double end) {
+    for (int axis = 0; axis < 3; ++axis) {
+      const double half = node.half[axis] * (1 + 1e-12) + 1e-300;
+      const double from = node.middle[axis] - origin[axis];
+      if (std::isinf(inverse[axis])) {
+        if (std::abs(from) > half) return false;
+        continue;
+      }
+      const double t0 = (from - half) * inverse[axis], t1 = (from + half) * inverse[axis];
+      begin = std::max(begin, std::min(t0, t1));
+      end = std::min(end, std::max(t0, t1));
+    }
+    return begin <= end;
+  }
   void build(std::span<Box> boxes);
 
   std::vector<Node> nodes_;  // each before its children

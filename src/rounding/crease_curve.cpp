@@ -77,8 +77,8 @@ double nearest_parameter(const CreaseCurve& curve, Vec3d x) {
     return (bb - aa) * s * c + p * s - q * c;
   };
   // A minimum lies where the slope turns from negative to positive; there are two at most.
-  constexpr int kSteps = 12;
-  const double step = (curve.u1 - curve.u0) / kSteps;
+  const int steps = std::max(1, int(std::ceil((curve.u1 - curve.u0) / radians(30))));
+  const double step = (curve.u1 - curve.u0) / steps;
   double best = curve.u0, least = distance_squared(curve.u0);
   const auto take = [&](double u) {
     const double d = distance_squared(u);
@@ -88,7 +88,7 @@ double nearest_parameter(const CreaseCurve& curve, Vec3d x) {
   };
   take(curve.u1);
   double before = slope(curve.u0);
-  for (int i = 1; i <= kSteps; ++i) {
+  for (int i = 1; i <= steps; ++i) {
     double high = curve.u0 + step * i, low = high - step;
     const double after = slope(high);
     if (before < 0 && after >= 0) {

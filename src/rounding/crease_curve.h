@@ -10,12 +10,14 @@
 // Legend     r radius; a, b unit directions of edges; u parameter: x(u) = center + a·u, or center + a·cos u + b·sin u
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <utility>
 #include <vector>
 
 #include "arris/math.h"
 #include "edges/flat_regions.h"
+#include "edges/welded_mesh.h"
 
 namespace arris {
 
@@ -23,6 +25,7 @@ struct CreaseCurve {
   Vec3d center, a, b;
   bool is_line = true;  // else an ellipse with half axes a and b
   double u0 = 0, u1 = 0;
+  std::uint32_t face_a = kNone, face_b = kNone;  // regions of those of the features that are faces
 
   [[nodiscard]] Vec3d at(double u) const;
   [[nodiscard]] Vec3d derivative(double u) const;

@@ -11,6 +11,12 @@ namespace {
 constexpr double kSame = 1e-6;
 // Relative to the radius: a place this near to the nearest one is as good.
 constexpr double kNear = 1e-4;
+// Relative to the radius: so near a place need be to lie well within reach.
+constexpr double kInside = 0.5;
+// Faces that turn by less are one: 1 − cosine.
+constexpr double kLeastTurn = 0.03;
+// How far beside the plane of two faces' normals that of a place between them may lie: facets end at pipes' ends.
+constexpr double kBeside = 0.05;
 // More functions than these cost more than asking the surface.
 constexpr std::size_t kMostDepths = 8;
 
@@ -34,13 +40,17 @@ class DepthBound {
       if (std::max({bound.d0, bound.d1, bound.d2}) <= 0) return std::nullopt;
       return bound;
     }
-    double inside = 0, outside = 1;
-    for (int i = 0; i < 24; ++i) {
-      const double middle = 0.5 * (inside + outside);
-      const bool is_near = distance_at(near + (offset_[farthest] - near) * middle) < r_;
-      (is_near ? inside : outside) = middle;
+    // Newton's steps from outside stay there.
+    Vec3d at = offset_[farthest];
+    for (int i = 0; i < 20; ++i) {
+      const Vec3d away = at - nearest_on_triangle(at, other_);
+      const double far = length(away);
+      const double speed = dot(away, near - at) / far;
+      const Vec3d next = at - (near - at) * ((far - r_) / speed);
+      if (!(far - r_ > kSame * r_ && speed < 0)) break;
+      at = next;
     }
-    return tangent(near + (offset_[farthest] - near) * outside);
+    return tangent(at);
   }
 
  private:
@@ -55,7 +65,7 @@ class DepthBound {
     for (int i = 0; i < 100; ++i) {
       const Vec3d before = c;
       c = nearest_on_triangle(nearest_on_triangle(c, other_), own);
-      if (length(c - before) < kNear * r_) break;
+      if (length(c - before) < kNear * r_ || distance_at(c) < kInside * r_) break;
     }
     return c;
   }
@@ -90,6 +100,36 @@ VoidCrossing CreasedSolid::cross_void(Vec3d x, Vec3d direction) const {
   return {pipes.first_entry(x, direction, exit.t), exit};
 }
 
+std::optional<EdgeBlend> CreasedSolid::blend_at(Vec3d x, Vec3d normal) const {
+  if (!surface.is_curved()) return std::nullopt;
+  const Vec3d c = x - normal * radius;
+  const double most = radius + 2 * tolerance;
+  std::vector<EdgeBlend::Side> touched;
+  surface.for_each_near(c - Vec3d(most), c + Vec3d(most), [&](const SurfaceTriangle& t) {
+    const Vec3d p = nearest_on_triangle(c, t);
+    if (length_squared(p - c) < most * most) touched.push_back({t.index, p, normalize(p - c), 0});
+  });
+  std::optional<EdgeBlend> best;
+  double widest = 1 - kLeastTurn;  // cosine
+  for (const EdgeBlend::Side& a : touched) {
+    for (const EdgeBlend::Side& b : touched) {
+      const double cosine = dot(a.face_normal, b.face_normal);
+      if (!(cosine < widest)) continue;
+      const double along_a = dot(normal, a.face_normal), along_b = dot(normal, b.face_normal);
+      const double s2 = 1 - cosine * cosine;
+      const double weight_a = (along_a - cosine * along_b) / s2;
+      const double weight_b = (along_b - cosine * along_a) / s2;
+      const Vec3d beside = normal - a.face_normal * weight_a - b.face_normal * weight_b;
+      if (std::min(weight_a, weight_b) < -kBeside || length(beside) > kBeside) continue;
+      widest = cosine;
+      best = EdgeBlend{a, b};
+      best->a.weight = std::max(weight_a, 0.0);
+      best->b.weight = std::max(weight_b, 0.0);
+    }
+  }
+  return best;
+}
+
 std::vector<DepthAtCorners> find_depths(const SolidSurface& surface,
                                         const SurfaceTriangle& triangle, Vec3d normal,
                                         double radius) {
@@ -99,7 +139,9 @@ std::vector<DepthAtCorners> find_depths(const SolidSurface& surface,
   const Vec3d high = max(offset[0], max(offset[1], offset[2])) + Vec3d(radius);
   std::vector<DepthAtCorners> depths;
   surface.for_each_near(low, high, [&](const SurfaceTriangle& other) {
-    if (other.region == triangle.region) return;
+    if (other.region == triangle.region || depths.size() > kMostDepths) return;
+    if (is_beyond_reach(offset, normal, other, (1 - kSame) * radius)) return;
+    if (surface.is_joined(triangle.region, other.region)) return;
     const auto depth = DepthBound(offset, other, radius).find();
     if (!depth) return;
     for (const DepthAtCorners& known : depths) {

@@ -10,6 +10,7 @@
 #include <optional>
 #include <vector>
 
+#include "arris/rounding.h"
 #include "edges/flat_regions.h"
 #include "rounding/crease_pipes.h"
 #include "rounding/crease_shape.h"
@@ -35,6 +36,9 @@ struct CreasedSolid {
   [[nodiscard]] bool is_kept(Vec3d x, Vec3d normal, std::uint32_t region) const;
   // From a point of the void, or of the sharp surface above it, on along a ray within the sharp solid.
   [[nodiscard]] VoidCrossing cross_void(Vec3d x, Vec3d direction) const;
+  // Of a place on a pipe of a curved solid, with its normal: the two faces that the ball there touches and between
+  // which the normal lies. Nothing: there are no such two. Points are relative to the centre, triangles the mesh's.
+  [[nodiscard]] std::optional<EdgeBlend> blend_at(Vec3d x, Vec3d normal) const;
   [[nodiscard]] std::size_t bytes() const {
     return surface.bytes() + pipes.bytes() + shape.bytes();
   }

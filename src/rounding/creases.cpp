@@ -1,423 +1,511 @@
 #include "rounding/creases.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
-#include <limits>
-#include <map>
 #include <optional>
-#include <set>
 #include <utility>
+
+#include "base/parallel_collect.h"
+#include "rounding/crease_cutter.h"
 
 namespace arris {
 namespace {
 
-// Pieces of curves shorter than this part of the radius are none.
-constexpr double kShortest = 1e-7;
-
-struct Face {
-  std::vector<std::pair<Vec3d, Vec3d>> outline;
-  Vec3d low{std::numeric_limits<double>::infinity()},
-      high{-std::numeric_limits<double>::infinity()};
-};
+// Relative to the solid's size: edges no longer than this may be pieces of a rim.
+constexpr double kShortPiece = 0.05;
+// Calls that one thread makes at a time.
+constexpr std::size_t kTrianglesAtOnce = 512, kCurvesAtOnce = 64;
 
 // Between two faces, with the directions in them that lead away from it.
 struct ConcaveEdge {
   Vec3d p0, p1, direction;
+  Vec3d normal0, normal1;
   Vec3d inward0, inward1;
   std::uint32_t face0, face1, vertex0, vertex1;
+  bool is_smooth;
 };
 
+// At which a concave edge ends: a ball may touch it.
 struct Corner {
   Vec3d point;
   std::vector<Vec3d> directions;     // of its edges, outgoing
   std::vector<std::uint32_t> faces;  // around it
+  std::vector<std::uint32_t> edges;  // concave ones
 };
+
+// A triangle moved inwards by r: where balls are that touch it.
+struct Offset {
+  std::array<Vec3d, 3> p;
+  Vec3d normal;  // of its face
+  Vec3d low, high;
+};
+
+struct TrianglePair {
+  FacePair faces;
+  std::uint32_t a, b;  // triangles of these
+
+  friend auto operator<=>(const TrianglePair&, const TrianglePair&) = default;
+};
+
+struct Interval {
+  double u0, u1;
+};
+
+bool is_apart(Vec3d low_a, Vec3d high_a, Vec3d low_b, Vec3d high_b, double slack) {
+  for (int axis = 0; axis < 3; ++axis) {
+    if (low_a[axis] > high_b[axis] + slack || low_b[axis] > high_a[axis] + slack) return true;
+  }
+  return false;
+}
 
 class CreaseFinder {
  public:
-  CreaseFinder(const CreaseInput& input, std::uint32_t shell)
+  explicit CreaseFinder(const CreaseInput& input)
       : in_(input),
-        shell_(shell),
         r_(input.radius),
-        tolerance_(crease_tolerance(input.size, input.radius)) {
-    collect();
+        tolerance_(crease_tolerance(input.size, input.radius)),
+        slack_(1e-3 * tolerance_),
+        offset_tree_(make_offsets()) {
+    collect_edges();
+    collect_corners();
   }
 
   std::optional<std::vector<CreaseCurve>> run() {
-    for (const auto& [a, b] : convex_) {
-      const std::size_t before = out_.size();
-      add_face_face(a, b);
-      if (out_.size() == before) return std::nullopt;
-    }
-    for (const auto& pair : pairs_of_faces()) {
-      if (!convex_.contains(pair)) add_face_face(pair.first, pair.second);
-    }
-    for (const ConcaveEdge& edge : edges_) add_face_edges(edge);
-    for (std::size_t i = 0; i < edges_.size(); ++i) add_edge_edges(i);
-    for (const auto& [vertex, corner] : corners_) add_face_corners(corner);
-    return std::move(out_);
+    std::vector<TrianglePair> pairs = crossing_pairs();
+    const auto within = std::ranges::stable_partition(
+        pairs, [&](const TrianglePair& p) { return !are_joined(p.faces.first, p.faces.second); });
+    std::vector<CreaseCurve> out = face_face_creases({pairs.begin(), within.begin()});
+    if (!have_creases(out)) return std::nullopt;
+    collect_ended(out);
+    pairs.erase(pairs.begin(), within.begin());
+    std::erase_if(pairs, [&](const TrianglePair& p) {
+      return !is_ended(p.faces.first) && !is_ended(p.faces.second);
+    });
+    const auto append = [&](const std::vector<CreaseCurve>& more) {
+      out.insert(out.end(), more.begin(), more.end());
+    };
+    append(face_face_creases(pairs));
+    append(parallel_collect<CreaseCurve>(
+        edges_.size(), kCurvesAtOnce,
+        [&](std::size_t i, auto& list) { add_face_edges(edges_[i], list); }));
+    append(parallel_collect<CreaseCurve>(corners_.size(), kCurvesAtOnce,
+                                         [&](std::size_t i, auto& list) {
+                                           add_edge_edges(corners_[i], list);
+                                           add_face_corners(corners_[i], list);
+                                         }));
+    return out;
   }
 
  private:
-  struct Interval {
-    double u0, u1;
-  };
-  struct Linear {
-    Vec3d normal;
-    double alpha;
-  };
-
   [[nodiscard]] Vec3d local(std::uint32_t vertex) const {
     return Vec3d(in_.mesh.vertices[vertex]) - in_.center;
   }
-  [[nodiscard]] const Plane& plane(std::uint32_t region) const {
-    return in_.regions.planes[region];
+  [[nodiscard]] Plane plane(std::uint32_t region) const {
+    Plane plane = in_.regions.planes[region];
+    const Vec3d center = in_.mesh.shells[in_.regions.shell[region]].center();
+    plane.d += dot(plane.normal, center - in_.center);
+    return plane;
+  }
+  [[nodiscard]] std::uint32_t region_of(std::uint32_t h) const { return in_.regions.region[h / 3]; }
+
+  std::vector<Box> make_offsets() {
+    std::vector<Box> boxes;
+    offsets_.reserve(in_.surface.triangles().size());
+    for (const SurfaceTriangle& t : in_.surface.triangles()) {
+      const Vec3d normal = in_.regions.planes[t.region].normal;
+      const Vec3d down = normal * r_;
+      Offset o{{t.p0 - down, t.p1 - down, t.p2 - down}, normal, {}, {}};
+      o.low = min(o.p[0], min(o.p[1], o.p[2]));
+      o.high = max(o.p[0], max(o.p[1], o.p[2]));
+      append_triangle_boxes(o.p, r_, std::uint32_t(offsets_.size()), boxes);
+      offsets_.push_back(o);
+    }
+    return boxes;
   }
 
-  void collect() {
-    const Shell& shell = in_.mesh.shells[shell_];
-    for (std::uint32_t i = 0; i < shell.triangle_count; ++i) {
-      const std::uint32_t t = in_.mesh.triangles_by_shell[shell.first_triangle + i];
-      const std::uint32_t region = in_.regions.region[t];
-      if (region == kNone) continue;
-      Face& face = faces_[region];
-      for (std::uint32_t h = 3 * t; h < 3 * t + 3; ++h) {
-        const Vec3d p0 = local(in_.mesh.origin(h)), p1 = local(in_.mesh.target(h));
-        face.low = min(face.low, p0);
-        face.high = max(face.high, p0);
-        const std::uint32_t twin = in_.mesh.twin[h];
-        if (twin > kLastHalfEdge || in_.regions.region[twin / 3] == region) continue;
-        face.outline.emplace_back(p0, p1);
-        add_corner_edge(h, region);
-        if (in_.kinds[h] == EdgeKind::concave && h < twin) add_edge(h, twin);
-        if (in_.kinds[h] == EdgeKind::convex) {
-          convex_.insert(std::minmax(region, in_.regions.region[twin / 3]));
+  // Visits each half-edge of the solid that is between two faces.
+  template <class Visit>
+  void for_outlines(const Visit& visit) const {
+    for (const std::uint32_t s : in_.shells) {
+      const Shell& shell = in_.mesh.shells[s];
+      for (std::uint32_t i = 0; i < shell.triangle_count; ++i) {
+        const std::uint32_t t = in_.mesh.triangles_by_shell[shell.first_triangle + i];
+        if (in_.regions.region[t] == kNone) continue;
+        for (std::uint32_t h = 3 * t; h < 3 * t + 3; ++h) {
+          const std::uint32_t twin = in_.mesh.twin[h];
+          if (twin <= kLastHalfEdge && region_of(twin) != region_of(h)) visit(h, twin);
         }
       }
     }
-    // Only where a ball can touch the corner itself.
-    std::erase_if(corners_, [&](const auto& entry) { return !concave_.contains(entry.first); });
   }
 
-  void add_corner_edge(std::uint32_t h, std::uint32_t region) {
-    const std::uint32_t from = in_.mesh.origin(h), to = in_.mesh.target(h);
-    const Vec3d p = local(from), q = local(to);
-    Corner& first = corners_[from];
-    first.point = p;
-    first.directions.push_back(normalize(q - p));
-    first.faces.push_back(region);
-    Corner& last = corners_[to];
-    last.point = q;
-    last.directions.push_back(normalize(p - q));
-    last.faces.push_back(region);
+  void collect_edges() {
+    for_outlines([&](std::uint32_t h, std::uint32_t twin) {
+      if (h > twin) return;
+      if (bends_in(h)) add_edge(h, twin);
+      if (in_.kinds[h] == EdgeKind::convex) {
+        const double extent = length(local(in_.mesh.target(h)) - local(in_.mesh.origin(h)));
+        convex_.push_back({std::minmax(region_of(h), region_of(twin)), extent});
+      }
+    });
+    std::ranges::sort(convex_);
+  }
+
+  [[nodiscard]] bool bends_in(std::uint32_t h) const {
+    return in_.kinds[h] == EdgeKind::concave ||
+           (in_.kinds[h] == EdgeKind::smooth && turn_at(in_.mesh, in_.regions, h) < 0);
   }
 
   void add_edge(std::uint32_t h, std::uint32_t twin) {
     ConcaveEdge edge;
+    edge.is_smooth = in_.kinds[h] == EdgeKind::smooth;
     edge.vertex0 = in_.mesh.origin(h);
     edge.vertex1 = in_.mesh.target(h);
     edge.p0 = local(edge.vertex0);
     edge.p1 = local(edge.vertex1);
     edge.direction = normalize(edge.p1 - edge.p0);
-    edge.face0 = in_.regions.region[h / 3];
-    edge.face1 = in_.regions.region[twin / 3];
+    edge.face0 = region_of(h);
+    edge.face1 = region_of(twin);
     // A face lies to the left of its half-edge.
-    edge.inward0 = cross(plane(edge.face0).normal, edge.direction);
-    edge.inward1 = cross(edge.direction, plane(edge.face1).normal);
-    concave_.insert(edge.vertex0);
-    concave_.insert(edge.vertex1);
+    edge.normal0 = in_.regions.planes[edge.face0].normal;
+    edge.normal1 = in_.regions.planes[edge.face1].normal;
+    edge.inward0 = cross(edge.normal0, edge.direction);
+    edge.inward1 = cross(edge.direction, edge.normal1);
     edges_.push_back(edge);
   }
 
-  template <class Visit>
-  void for_faces_near(Vec3d low, Vec3d high, const Visit& visit) const {
-    std::set<std::uint32_t> near;
-    const Vec3d reach(2 * (r_ + tolerance_));
-    in_.surface.for_each_near(low - reach, high + reach,
-                              [&](const SurfaceTriangle& t) { near.insert(t.region); });
-    for (const std::uint32_t region : near) visit(region);
+  void collect_corners() {
+    if (edges_.empty()) return;
+    std::vector<std::uint32_t> vertices;
+    for (const ConcaveEdge& e : edges_) vertices.insert(vertices.end(), {e.vertex0, e.vertex1});
+    std::ranges::sort(vertices);
+    vertices.erase(std::ranges::unique(vertices).begin(), vertices.end());
+    corners_.resize(vertices.size());
+    const auto corner_at = [&](std::uint32_t vertex) -> Corner* {
+      const auto found = std::ranges::lower_bound(vertices, vertex);
+      if (found == vertices.end() || *found != vertex) return nullptr;
+      return &corners_[std::size_t(found - vertices.begin())];
+    };
+    for (std::size_t i = 0; i < vertices.size(); ++i) corners_[i].point = local(vertices[i]);
+    for (std::uint32_t i = 0; i < edges_.size(); ++i) {
+      corner_at(edges_[i].vertex0)->edges.push_back(i);
+      corner_at(edges_[i].vertex1)->edges.push_back(i);
+    }
+    for_outlines([&](std::uint32_t h, std::uint32_t) {
+      const std::uint32_t from = in_.mesh.origin(h), to = in_.mesh.target(h);
+      const Vec3d direction = normalize(local(to) - local(from));
+      if (Corner* const corner = corner_at(from)) {
+        corner->directions.push_back(direction);
+        corner->faces.push_back(region_of(h));
+      }
+      if (Corner* const corner = corner_at(to)) {
+        corner->directions.push_back(-direction);
+        corner->faces.push_back(region_of(h));
+      }
+    });
   }
 
-  [[nodiscard]] std::set<std::pair<std::uint32_t, std::uint32_t>> pairs_of_faces() const {
-    std::set<std::pair<std::uint32_t, std::uint32_t>> pairs;
-    for (const SurfaceTriangle& t : in_.surface.triangles()) {
-      for_faces_near(min(t.p0, min(t.p1, t.p2)), max(t.p0, max(t.p1, t.p2)),
-                     [&](std::uint32_t other) {
-                       if (t.region < other) pairs.emplace(t.region, other);
-                     });
+  // Whether each convex edge has one, but for pieces of curved rims that are short enough to be rounded by their
+  // neighbours.
+  // creases: sorted by faces.
+  [[nodiscard]] bool have_creases(const std::vector<CreaseCurve>& creases) const {
+    const double most = in_.surface.is_curved() ? std::min(r_, kShortPiece * in_.size) : 0;
+    auto at = creases.begin();
+    double missing = 0;
+    for (std::size_t i = 0; i < convex_.size(); ++i) {
+      const FacePair faces = convex_[i].first;
+      if (i == 0 || faces != convex_[i - 1].first) missing = 0;
+      while (at != creases.end() && FacePair(at->face_a, at->face_b) < faces) ++at;
+      if (at != creases.end() && FacePair(at->face_a, at->face_b) == faces) continue;
+      missing += convex_[i].second;
+      if (missing > most) return false;
     }
+    return true;
+  }
+
+  [[nodiscard]] CreaseCutter make_cutter() const { return {in_.surface, r_, tolerance_}; }
+
+  // Two faces have a crease where the two are met by one ball: where triangles moved inwards cross.
+  [[nodiscard]] std::vector<TrianglePair> crossing_pairs() const {
+    std::vector<TrianglePair> pairs = parallel_collect<TrianglePair>(
+        offsets_.size(), kTrianglesAtOnce,
+        [&](std::size_t i, auto& list) { add_crossing(std::uint32_t(i), list); });
+    std::ranges::sort(pairs);
+    pairs.erase(std::ranges::unique(pairs).begin(), pairs.end());
     return pairs;
   }
 
-  void add_face_face(std::uint32_t a, std::uint32_t b) {
-    const Vec3d low = max(faces_.at(a).low, faces_.at(b).low) - Vec3d(2 * r_);
-    const Vec3d high = min(faces_.at(a).high, faces_.at(b).high) + Vec3d(2 * r_);
-    std::optional<CreaseCurve> line =
-        face_face_crease(plane(a), plane(b), r_, (low + high) * 0.5, 2 * in_.size + 4 * r_);
-    if (!line || !clip_to_box(*line, low, high)) return;
-    std::vector<Linear> bounds;
-    add_outline(a, bounds);
-    add_outline(b, bounds);
-    cut(*line, bounds, a, b);
+  // pairs: sorted by faces.
+  [[nodiscard]] std::vector<CreaseCurve> face_face_creases(
+      std::span<const TrianglePair> pairs) const {
+    if (pairs.empty()) return {};
+    std::vector<std::size_t> begins;
+    for (std::size_t i = 0; i < pairs.size(); ++i) {
+      if (i == 0 || pairs[i].faces != pairs[i - 1].faces) begins.push_back(i);
+    }
+    begins.push_back(pairs.size());
+    return parallel_collect<CreaseCurve>(
+        begins.size() - 1, kCurvesAtOnce, [&](std::size_t k, auto& list) {
+          add_face_face(pairs.subspan(begins[k], begins[k + 1] - begins[k]), list);
+        });
   }
 
-  void add_face_edges(const ConcaveEdge& edge) {
-    for_faces_near(min(edge.p0, edge.p1), max(edge.p0, edge.p1), [&](std::uint32_t face) {
+  // Whether they are one curved surface.
+  [[nodiscard]] bool are_joined(std::uint32_t a, std::uint32_t b) const {
+    return in_.surface.is_joined(a, b) || in_.surface.is_joined(b, a);
+  }
+
+  void collect_ended(const std::vector<CreaseCurve>& creases) {
+    for (const CreaseCurve& c : creases) ended_.insert(ended_.end(), {c.face_a, c.face_b});
+    std::ranges::sort(ended_);
+    ended_.erase(std::ranges::unique(ended_).begin(), ended_.end());
+  }
+  [[nodiscard]] bool is_ended(std::uint32_t face) const {
+    return std::ranges::binary_search(ended_, face);
+  }
+  // Creases between features of one curved surface matter only where its rounded edges are.
+  [[nodiscard]] bool matters(std::uint32_t face, std::span<const std::uint32_t> others) const {
+    return is_ended(face) ||
+           std::ranges::none_of(others, [&](std::uint32_t o) { return are_joined(face, o); }) ||
+           std::ranges::any_of(others, [&](std::uint32_t o) { return is_ended(o); });
+  }
+
+  void add_crossing(std::uint32_t i, std::vector<TrianglePair>& pairs) const {
+    const Offset& own = offsets_[i];
+    const std::uint32_t face = in_.surface.triangles()[i].region;
+    std::vector<Box> parts;
+    append_triangle_boxes(own.p, r_, i, parts);
+    for (const Box& part : parts) {
+      const Vec3d low = part.low - Vec3d(slack_), high = part.high + Vec3d(slack_);
+      offset_tree_.for_each_near(low, high, [&](std::uint32_t j) {
+        const std::uint32_t other = in_.surface.triangles()[j].region;
+        if (j <= i || other == face) return;
+        const Offset& o = offsets_[j];
+        if (is_apart(low, high, o.low, o.high, 0) || is_beside(own, o) || is_beside(o, own)) return;
+        if (face < other) {
+          pairs.push_back({{face, other}, i, j});
+        } else {
+          pairs.push_back({{other, face}, j, i});
+        }
+      });
+    }
+  }
+
+  // Whether a triangle lies on one side of another's plane.
+  [[nodiscard]] bool is_beside(const Offset& a, const Offset& b) const {
+    const double h0 = dot(a.normal, b.p[0] - a.p[0]), h1 = dot(a.normal, b.p[1] - a.p[0]),
+                 h2 = dot(a.normal, b.p[2] - a.p[0]);
+    return std::min({h0, h1, h2}) > tolerance_ || std::max({h0, h1, h2}) < -tolerance_;
+  }
+
+  void add_face_face(std::span<const TrianglePair> pairs, std::vector<CreaseCurve>& out) const {
+    const auto [a, b] = pairs.front().faces;
+    const Offset& first = offsets_[pairs.front().a];
+    const Offset& second = offsets_[pairs.front().b];
+    const Vec3d near = (max(first.low, second.low) + min(first.high, second.high)) * 0.5;
+    std::optional<CreaseCurve> line =
+        face_face_crease(plane(a), plane(b), r_, near, 2 * in_.size + 4 * r_);
+    if (!line) return;
+    line->face_a = a;
+    line->face_b = b;
+    std::vector<Interval> parts;
+    for (const TrianglePair& pair : pairs) {
+      Interval part{line->u0, line->u1};
+      clip(*line, offsets_[pair.a], part);
+      clip(*line, offsets_[pair.b], part);
+      if (part.u0 < part.u1) parts.push_back(part);
+    }
+    if (parts.empty()) return;
+    std::ranges::sort(parts, {}, &Interval::u0);
+    CreaseCutter cutter = make_cutter();
+    Interval whole = parts.front();
+    const auto take = [&] {
+      CreaseCurve piece = *line;
+      piece.u0 = whole.u0;
+      piece.u1 = whole.u1;
+      cutter.cut_reached(piece, out);
+    };
+    for (const Interval& part : parts) {
+      if (part.u0 > whole.u1 + tolerance_) {
+        take();
+        whole = part;
+      }
+      whole.u1 = std::max(whole.u1, part.u1);
+    }
+    take();
+  }
+
+  // To where a line is over the triangle, or beside it by no more than the slack.
+  void clip(const CreaseCurve& line, const Offset& triangle, Interval& part) const {
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Vec3d side = triangle.p[(k + 1) % 3] - triangle.p[k];
+      const Vec3d across = cross(triangle.normal, side);
+      const double at0 = dot(across, line.center - triangle.p[k]) + slack_ * length(side);
+      const double speed = dot(across, line.a);
+      if (speed > 0) {
+        part.u0 = std::max(part.u0, -at0 / speed);
+      } else if (speed < 0) {
+        part.u1 = std::min(part.u1, -at0 / speed);
+      } else if (at0 < 0) {
+        part.u1 = part.u0;
+      }
+    }
+  }
+
+  // Visits the faces that have triangles whose offsets reach into a box, with these.
+  template <class Visit>
+  void for_faces_near(Vec3d low, Vec3d high, const Visit& visit) const {
+    const Vec3d slack(slack_);
+    std::vector<FacePair> near;  // a face, a triangle
+    offset_tree_.for_each_near(low - slack, high + slack, [&](std::uint32_t i) {
+      if (is_apart(low, high, offsets_[i].low, offsets_[i].high, slack_)) return;
+      near.emplace_back(in_.surface.triangles()[i].region, i);
+    });
+    std::ranges::sort(near);
+    near.erase(std::ranges::unique(near).begin(), near.end());
+    std::vector<std::uint32_t> triangles;
+    for (std::size_t i = 0; i < near.size(); ++i) {
+      triangles.push_back(near[i].second);
+      if (i + 1 < near.size() && near[i + 1].first == near[i].first) continue;
+      visit(near[i].first, triangles);
+      triangles.clear();
+    }
+  }
+
+  // Centres of the balls that touch an edge from between its faces.
+  [[nodiscard]] Box box_about(const ConcaveEdge& edge) const {
+    const Vec3d end0 = edge.normal0 * -r_, end1 = edge.normal1 * -r_;
+    const double half_turn =
+        0.5 * std::acos(std::clamp(dot(edge.normal0, edge.normal1), -1.0, 1.0));
+    const Vec3d bulge(r_ * (1 - std::cos(half_turn)));
+    return {min(edge.p0, edge.p1) + max(min(end0, end1) - bulge, Vec3d(-r_)),
+            max(edge.p0, edge.p1) + min(max(end0, end1) + bulge, Vec3d(r_)), 0};
+  }
+
+  void add_face_edges(const ConcaveEdge& edge, std::vector<CreaseCurve>& out) const {
+    CreaseCutter cutter = make_cutter();
+    cutter.set_edges({{{edge.p0, edge.p1}}});
+    const Box box = box_about(edge);
+    for_faces_near(box.low, box.high, [&](std::uint32_t face, const auto& triangles) {
       if (face == edge.face0 || face == edge.face1) return;
+      if (!matters(face, std::array{edge.face0, edge.face1})) return;
       for (CreaseCurve& curve :
            face_edge_creases(plane(face), {edge.p0, edge.direction}, r_, 2 * in_.size + 4 * r_)) {
-        std::vector<Linear> bounds;
-        add_outline(face, bounds);
+        curve.face_a = face;
+        std::vector<CurveBound> bounds;
+        add_sides(triangles, bounds);
         add_edge_bounds(edge, bounds);
-        cut(curve, bounds, face, kNone);
+        cutter.cut(
+            curve, bounds, [&](Vec3d x) { return touches(edge, x) && is_over_any(triangles, x); },
+            out);
       }
     });
   }
 
-  void add_edge_edges(std::size_t first) {
-    const ConcaveEdge& e = edges_[first];
-    for (std::size_t i = first + 1; i < edges_.size(); ++i) {
-      const ConcaveEdge& f = edges_[i];
-      const bool at0 = e.vertex0 == f.vertex0 || e.vertex0 == f.vertex1;
-      const bool at1 = e.vertex1 == f.vertex0 || e.vertex1 == f.vertex1;
-      if (!at0 && !at1) continue;
-      for (CreaseCurve& curve :
-           edge_edge_creases(at0 ? e.p0 : e.p1, e.direction, f.direction, r_)) {
-        std::vector<Linear> bounds;
-        add_edge_bounds(e, bounds);
-        add_edge_bounds(f, bounds);
-        cut(curve, bounds, kNone, kNone);
+  void add_edge_edges(const Corner& corner, std::vector<CreaseCurve>& out) const {
+    const auto is_smooth = [&](std::uint32_t i) { return edges_[i].is_smooth; };
+    const auto is_at_end = [&](std::uint32_t face) { return is_ended(face); };
+    if (std::ranges::all_of(corner.edges, is_smooth) &&
+        std::ranges::none_of(corner.faces, is_at_end)) {
+      return;
+    }
+    for (std::size_t i = 0; i < corner.edges.size(); ++i) {
+      for (std::size_t k = i + 1; k < corner.edges.size(); ++k) {
+        const ConcaveEdge& e = edges_[corner.edges[i]];
+        const ConcaveEdge& f = edges_[corner.edges[k]];
+        CreaseCutter cutter = make_cutter();
+        cutter.set_edges({{{e.p0, e.p1}, {f.p0, f.p1}}});
+        for (const CreaseCurve& curve :
+             edge_edge_creases(corner.point, e.direction, f.direction, r_)) {
+          std::vector<CurveBound> bounds;
+          add_edge_bounds(e, bounds);
+          add_edge_bounds(f, bounds);
+          cutter.cut(
+              curve, bounds, [&](Vec3d x) { return touches(e, x) && touches(f, x); }, out);
+        }
       }
     }
   }
 
-  void add_face_corners(const Corner& corner) {
-    for_faces_near(corner.point, corner.point, [&](std::uint32_t face) {
-      if (std::ranges::count(corner.faces, face) > 0) return;
-      std::optional<CreaseCurve> curve = face_corner_crease(plane(face), corner.point, r_);
-      if (!curve) return;
-      std::vector<Linear> bounds;
-      add_outline(face, bounds);
-      for (const Vec3d d : corner.directions) bounds.push_back({d, -dot(d, corner.point)});
-      cut(*curve, bounds, face, kNone);
-    });
+  void add_face_corners(const Corner& corner, std::vector<CreaseCurve>& out) const {
+    CreaseCutter cutter = make_cutter();
+    for_faces_near(
+        corner.point - Vec3d(r_), corner.point + Vec3d(r_),
+        [&](std::uint32_t face, const auto& triangles) {
+          if (std::ranges::count(corner.faces, face) > 0 || !matters(face, corner.faces)) return;
+          std::optional<CreaseCurve> curve = face_corner_crease(plane(face), corner.point, r_);
+          if (!curve) return;
+          curve->face_a = face;
+          std::vector<CurveBound> bounds;
+          add_sides(triangles, bounds);
+          for (const Vec3d d : corner.directions) {
+            bounds.push_back({d, -dot(d, corner.point)});
+          }
+          cutter.cut(
+              *curve, bounds,
+              [&](Vec3d x) { return touches(corner, x) && is_over_any(triangles, x); }, out);
+        });
   }
 
-  // Where a point's foot on the face crosses the face's outline.
-  void add_outline(std::uint32_t region, std::vector<Linear>& bounds) const {
-    const Vec3d n = plane(region).normal;
-    for (const auto& [p0, p1] : faces_.at(region).outline) {
-      const Vec3d across = cross(n, p1 - p0);
-      bounds.push_back({across, -dot(across, p0)});
+  // Where a point crosses the sides of a face's triangles.
+  void add_sides(const std::vector<std::uint32_t>& triangles,
+                 std::vector<CurveBound>& bounds) const {
+    for (const std::uint32_t i : triangles) {
+      const Offset& o = offsets_[i];
+      for (std::size_t k = 0; k < 3; ++k) {
+        const Vec3d across = cross(o.normal, o.p[(k + 1) % 3] - o.p[k]);
+        bounds.push_back({across, -dot(across, o.p[k])});
+      }
     }
+  }
+
+  [[nodiscard]] bool is_over_any(const std::vector<std::uint32_t>& triangles, Vec3d x) const {
+    return std::ranges::any_of(triangles, [&](std::uint32_t i) {
+      const Offset& o = offsets_[i];
+      for (std::size_t k = 0; k < 3; ++k) {
+        const Vec3d side = o.p[(k + 1) % 3] - o.p[k];
+        if (dot(cross(o.normal, side), x - o.p[k]) < -tolerance_ * length(side)) return false;
+      }
+      return true;
+    });
   }
 
   // Where a point's nearest point of the edge's line is no longer that of the surface.
-  static void add_edge_bounds(const ConcaveEdge& edge, std::vector<Linear>& bounds) {
+  static void add_edge_bounds(const ConcaveEdge& edge, std::vector<CurveBound>& bounds) {
     bounds.push_back({edge.inward0, -dot(edge.inward0, edge.p0)});
     bounds.push_back({edge.inward1, -dot(edge.inward1, edge.p0)});
     bounds.push_back({edge.direction, -dot(edge.direction, edge.p0)});
     bounds.push_back({edge.direction, -dot(edge.direction, edge.p1)});
   }
 
-  static bool clip_to_box(CreaseCurve& line, Vec3d low, Vec3d high) {
-    for (int axis = 0; axis < 3; ++axis) {
-      const double from = low[axis] - line.center[axis], to = high[axis] - line.center[axis];
-      if (line.a[axis] == 0) {
-        if (from > 0 || to < 0) return false;
-        continue;
-      }
-      const double u0 = from / line.a[axis], u1 = to / line.a[axis];
-      line.u0 = std::max(line.u0, std::min(u0, u1));
-      line.u1 = std::min(line.u1, std::max(u0, u1));
-    }
-    return line.u0 < line.u1;
+  // Whether a ball around x would touch the edge, or corner, and nothing about it before.
+  [[nodiscard]] bool touches(const ConcaveEdge& edge, Vec3d x) const {
+    return dot(edge.inward0, x - edge.p0) <= tolerance_ &&
+           dot(edge.inward1, x - edge.p0) <= tolerance_ &&
+           dot(edge.direction, x - edge.p0) >= -tolerance_ &&
+           dot(edge.direction, x - edge.p1) <= tolerance_;
   }
-
-  // Its pieces that lie on E become creases. bounds: where it may cease to belong to its features; face_a, face_b:
-  // those of them that are faces.
-  void cut(const CreaseCurve& curve, const std::vector<Linear>& bounds, std::uint32_t face_a,
-           std::uint32_t face_b) {
-    std::vector<double> at{curve.u0, curve.u1};
-    for (const Linear& bound : bounds) add_crossings(curve, bound.normal, bound.alpha, at);
-    std::ranges::sort(at);
-    for (std::size_t i = 1; i < at.size(); ++i) {
-      if (at[i] - at[i - 1] < shortest(curve)) continue;
-      const Vec3d middle = curve.at(0.5 * (at[i - 1] + at[i]));
-      if (!touches(middle, face_a) || !touches(middle, face_b)) continue;
-      CreaseCurve piece = curve;
-      piece.u0 = at[i - 1];
-      piece.u1 = at[i];
-      cut_reached(piece, face_a, face_b);
-    }
-  }
-
-  // Whether the foot of a point on a face's offset lies on the face.
-  [[nodiscard]] bool touches(Vec3d x, std::uint32_t region) const {
-    if (region == kNone) return true;
-    const double most = r_ + tolerance_;
-    bool found = false;
-    in_.surface.for_each_near(x - Vec3d(most), x + Vec3d(most), [&](const SurfaceTriangle& t) {
-      if (found || t.region != region) return;
-      found = length_squared(x - nearest_on_triangle(x, t)) <= most * most;
-    });
-    return found;
-  }
-
-  static double length_scale(const CreaseCurve& curve) {
-    return curve.is_line ? 1 : std::max(length(curve.a), length(curve.b));
-  }
-  [[nodiscard]] double shortest(const CreaseCurve& curve) const {
-    return kShortest * r_ / length_scale(curve);
-  }
-
-  // Without what lies nearer to any triangle than r.
-  void cut_reached(const CreaseCurve& curve, std::uint32_t face_a, std::uint32_t face_b) {
-    near_.clear();
-    const auto [low, high] = box_of(curve);
-    const Vec3d reach(r_ + tolerance_);
-    in_.surface.for_each_near(low - reach, high + reach,
-                              [&](const SurfaceTriangle& t) { near_.push_back(&t); });
-    std::vector<double> at{curve.u0, curve.u1};
-    for (const SurfaceTriangle* t : near_) {
-      if (t->region != face_a && t->region != face_b) add_reaches(curve, *t, at);
-    }
-    std::ranges::sort(at);
-    Interval open{0, 0};
-    bool is_open = false;
-    double from = at.front();
-    for (std::size_t i = 1; i < at.size(); ++i) {
-      if (at[i] - from < shortest(curve)) continue;
-      const bool stays = is_on_erosion(curve.at(0.5 * (from + at[i])), face_a, face_b);
-      if (stays && !is_open) open.u0 = from;
-      if (stays) open.u1 = at[i];
-      if (!stays && is_open) add(curve, open);
-      is_open = stays;
-      from = at[i];
-    }
-    if (is_open) add(curve, open);
-  }
-
-  void add(const CreaseCurve& curve, Interval part) {
-    out_.push_back(curve);
-    out_.back().u0 = part.u0;
-    out_.back().u1 = part.u1;
-  }
-
-  [[nodiscard]] static std::pair<Vec3d, Vec3d> box_of(const CreaseCurve& curve) {
-    if (curve.is_line) {
-      const Vec3d p0 = curve.at(curve.u0), p1 = curve.at(curve.u1);
-      return {min(p0, p1), max(p0, p1)};
-    }
-    // The points of an ellipse lie within this of a part's chord.
-    const Vec3d p0 = curve.at(curve.u0), p1 = curve.at(curve.u1);
-    const double angle = std::min(curve.u1 - curve.u0, 2 * kPi);
-    const Vec3d bulge((1 - std::cos(0.5 * angle)) * std::hypot(length(curve.a), length(curve.b)));
-    return {min(p0, p1) - bulge, max(p0, p1) + bulge};
-  }
-
-  // r from its features, and from nothing less.
-  [[nodiscard]] bool is_on_erosion(Vec3d x, std::uint32_t face_a, std::uint32_t face_b) const {
-    const double least = r_ - tolerance_, most = r_ + tolerance_;
-    bool on_a = face_a == kNone, on_b = face_b == kNone, touches = false;
-    for (const SurfaceTriangle* t : near_) {
-      const double distance = length(x - nearest_on_triangle(x, *t));
-      if (distance < least) return false;
-      if (distance > most) continue;
-      touches = true;
-      on_a = on_a || t->region == face_a;
-      on_b = on_b || t->region == face_b;
-    }
-    return touches && on_a && on_b;
-  }
-
-  // Where the curve comes within r of a triangle, or leaves it.
-  void add_reaches(const CreaseCurve& curve, const SurfaceTriangle& t,
-                   std::vector<double>& at) const {
-    const auto above = [&](double u) {
-      const Vec3d x = curve.at(u);
-      return length(x - nearest_on_triangle(x, t)) - r_;
-    };
-    // Along a line the distance is convex: one minimum. Along an ellipse minima are looked for between samples.
-    const int samples =
-        curve.is_line ? 2 : std::max(4, int(std::ceil((curve.u1 - curve.u0) / radians(8))));
-    const double step = (curve.u1 - curve.u0) / samples;
-    std::vector<double> us, values;
-    for (int i = 0; i <= samples; ++i) {
-      us.push_back(curve.u0 + step * i);
-      values.push_back(above(us.back()));
-    }
-    for (std::size_t i = 0; i < us.size(); ++i) {
-      const bool is_least = (i == 0 || values[i] <= values[i - 1]) &&
-                            (i + 1 == us.size() || values[i] <= values[i + 1]);
-      if (!is_least || values[i] <= 0) continue;
-      const double low = us[i == 0 ? 0 : i - 1], high = us[std::min(i + 1, us.size() - 1)];
-      const double u = minimum(above, length_scale(curve), low, high);
-      if (above(u) >= 0) continue;
-      at.push_back(root(above, u, low));
-      at.push_back(root(above, u, high));
-    }
-    for (std::size_t i = 0; i + 1 < us.size(); ++i) {
-      if ((values[i] < 0) == (values[i + 1] < 0)) continue;
-      const bool first = values[i] < 0;
-      at.push_back(root(above, us[first ? i : i + 1], us[first ? i + 1 : i]));
-    }
-  }
-
-  // By golden sections, until it is below 0 or can't come to be. speed: by which f changes at most.
-  template <class Function>
-  static double minimum(const Function& f, double speed, double low, double high) {
-    constexpr double kGolden = 0.6180339887498949;
-    double u = high - kGolden * (high - low), v = low + kGolden * (high - low);
-    double fu = f(u), fv = f(v);
-    for (int i = 0; i < 60 && low < high; ++i) {
-      const double least = std::min(fu, fv);
-      if (least < 0 || least > speed * (high - low)) break;
-      if (fu < fv) {
-        high = v;
-        v = u;
-        fv = fu;
-        u = high - kGolden * (high - low);
-        fu = f(u);
-      } else {
-        low = u;
-        u = v;
-        fu = fv;
-        v = low + kGolden * (high - low);
-        fv = f(v);
-      }
-    }
-    return fu < fv ? u : v;
-  }
-
-  // Between a place where f < 0 and one where it may not be; the latter if it is not.
-  template <class Function>
-  static double root(const Function& f, double below, double above) {
-    if (f(above) < 0) return above;
-    for (int i = 0; i < 48; ++i) {
-      const double middle = 0.5 * (below + above);
-      (f(middle) < 0 ? below : above) = middle;
-    }
-    return above;
+  [[nodiscard]] bool touches(const Corner& corner, Vec3d x) const {
+    return std::ranges::all_of(corner.directions,
+                               [&](Vec3d d) { return dot(d, x - corner.point) <= tolerance_; });
   }
 
   const CreaseInput& in_;
-  std::uint32_t shell_;
   double r_, tolerance_;
-  std::map<std::uint32_t, Face> faces_;
-  std::set<std::pair<std::uint32_t, std::uint32_t>> convex_;  // faces that meet in a convex edge
+  double slack_;                 // by which what is computed may lie beside its features
+  std::vector<Offset> offsets_;  // of the surface's triangles
+  BoxTree offset_tree_;
+  std::vector<std::pair<FacePair, double>> convex_;  // edges by their faces, with their lengths
+  std::vector<std::uint32_t> ended_;  // faces with a crease that is not within one curved surface
   std::vector<ConcaveEdge> edges_;
-  std::map<std::uint32_t, Corner> corners_;
-  std::set<std::uint32_t> concave_;  // vertices at which a concave edge ends
-  std::vector<const SurfaceTriangle*> near_;
-  std::vector<CreaseCurve> out_;
+  std::vector<Corner> corners_;
 };
 
 }  // namespace
 
-std::optional<std::vector<CreaseCurve>> find_creases(const CreaseInput& input,
-                                                     std::uint32_t shell) {
-  return CreaseFinder(input, shell).run();
+std::optional<std::vector<CreaseCurve>> find_creases(const CreaseInput& input) {
+  return CreaseFinder(input).run();
 }
 
 }  // namespace arris

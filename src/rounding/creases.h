@@ -2,14 +2,15 @@
 // What       E, the points of a solid P at distance r or more from its surface, is bounded by offsets of P's features:
 //            planes of faces, cylinders about concave edges, spheres about concave corners. Where two of these meet E
 //            has a crease, and opening(P) is P's kept faces and the balls of radius r around the creases. Each pair
-//            of features within reach gives a curve (crease_curve.h), which is cut wherever it may begin or cease to
-//            be on E; a piece stays if its middle is r from both features and no nearer to anything else.
+//            of features whose offsets cross gives a curve (crease_curve.h), and the parts of it that are on E are
+//            creases (crease_cutter.h).
 // In / Out   coordinates relative to the solid's centre
 // Guarantee  every point of a crease lies in E: balls around it hold nothing that is not in opening(P), so that a
 //            crease too many does no harm
 // Limits     two concave edges that don't meet, or a corner and an edge, within 2 r of each other give no curve: walls
 //            between them are thinner than 2 r and vanish but for what other creases hold
-// Cost       about linear in the pairs of features within 2 r of each other, times the triangles that are near both
+// Cost       about linear in the pairs of triangles whose offsets cross, times the triangles within r of their crease;
+//            on all cores
 #pragma once
 
 #include <cstdint>
@@ -33,15 +34,17 @@ inline double crease_tolerance(double size, double radius) {
 struct CreaseInput {
   const WeldedMesh& mesh;
   const FlatRegions& regions;
-  std::span<const EdgeKind> kinds;  // per half-edge
-  const SolidSurface& surface;      // of the shell
-  Vec3d center;                     // of the shell
-  double size = 0;                  // of the shell
+  std::span<const EdgeKind> kinds;        // per half-edge
+  std::span<const std::uint32_t> shells;  // of one solid
+  const SolidSurface& surface;            // of all these
+  Vec3d center;                           // of the outermost
+  double size = 0;                        // of the outermost
   double radius = 0;
 };
 
-// Nothing: a convex edge has no crease. The radius is too large for what lies beside it, or more is taken away than
-// edges.
-std::optional<std::vector<CreaseCurve>> find_creases(const CreaseInput& input, std::uint32_t shell);
+// Nothing: a convex edge has no crease, and is no short piece of a curved rim. The radius is too large for what lies
+// beside it, or more is taken away than edges. Convex edges are sharp ones; smooth edges that bend in are concave ones
+// all the same, and creases within one curved surface (SolidSurface::is_joined) are made at faces that have others.
+std::optional<std::vector<CreaseCurve>> find_creases(const CreaseInput& input);
 
 }  // namespace arris

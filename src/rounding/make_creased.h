@@ -1,5 +1,6 @@
-// make_creased.h — from one shell of a mesh to a CreasedSolid, and the bands that say where its faces are kept
-// In / Out   bands are of the caller's triangles
+// make_creased.h — from shells of a mesh to a CreasedSolid, and the bands that say where its faces are kept
+// In / Out   relative to the centre of the outermost shell; bands are of the caller's triangles
+// Cost       on all cores
 #pragma once
 
 #include <cstdint>
@@ -21,11 +22,18 @@ struct CreasedInput {
   const FlatRegions& regions;
   std::span<const EdgeKind> kinds;  // per half-edge
   double radius;
-  bool with_outlines = true;  // CreasedSolid::shape; else empty
+  bool is_outside =
+      false;  // of the space outside (outside_mesh.h): without CreasedSolid::shape, and flat faces alone
 };
 
-// Nothing, and no bands: something about the shell is open or curved, or the radius takes away a whole edge.
-std::optional<CreasedSolid> make_creased_solid(const CreasedInput& input, std::uint32_t shell,
-                                               std::vector<TriangleBand>& bands);
+struct MadeCreased {
+  CreasedSolid solid;
+  std::vector<TriangleBand> bands;
+};
+
+// shells: the outside of one solid, then its hollows. Nothing: something about them is open, the radius takes away a
+// whole edge or face, or facets of a curved surface are too fine for it.
+std::optional<MadeCreased> make_creased_solid(const CreasedInput& input,
+                                              std::span<const std::uint32_t> shells);
 
 }  // namespace arris

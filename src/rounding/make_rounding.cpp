@@ -7,6 +7,7 @@
 #include <string>
 
 #include "arris/error.h"
+#include "base/parallel_for.h"
 #include "edges/inscribed_ball.h"
 #include "rounding/bands.h"
 #include "rounding/crease_network.h"
@@ -41,6 +42,9 @@ class RoundingMaker {
     classify_edges();
     sort_triangles_by_region();
     make_solids();
+    for (std::uint32_t s = 0; s < data_->solids.size(); ++s) judge_shape(s);
+    make_creased_solids();
+    make_filled_solids();
     // A mesh of bevels has each edge of its own.
     const ShortEdges short_edges = keep_networks_ ? ShortEdges::leave_sharp : ShortEdges::skip;
     NetworkBuilder builder(welded_, regions_, kinds_, options_.radius, short_edges);
@@ -167,15 +171,13 @@ class RoundingMaker {
 
   void round_solid(NetworkBuilder& builder, std::uint32_t s) {
     Solid& solid = data_->solids[s];
-    judge_shape(s);
     solid.first_arc = std::uint32_t(data_->arcs.size());
     solid.first_node = std::uint32_t(data_->nodes.size());
-    if (is_cavity(welded_.shells[s])) {
+    const bool creased = solid.creased != kNone;
+    if (is_cavity(welded_.shells[s]) && !creased) {
       ++cavities_;
       return;
     }
-    make_filled(s);
-    const bool creased = make_creased(s);
     const bool convex_solid = solid.convex && solid.closed;
     ShellNetwork network = builder.build(s, convex_solid);
     if (convex_solid && network.inverted) {
@@ -197,34 +199,98 @@ class RoundingMaker {
       const BandInput input{mesh_, welded_, regions_, triangle_begin_, triangles_, options_.radius};
       append_bands(input, network, solid, solid.first_arc, bands_);
     }
-    append(network, solid);
+    append(network, s);
     if (!keep_networks_) return;
     networks_.resize(data_->solids.size());
     networks_[s] = std::move(network);
   }
 
-  // Whoever wants networks gets local ones. False: the radius takes away a whole edge, or the shape is not for it.
-  bool make_creased(std::uint32_t s) {
-    Solid& solid = data_->solids[s];
-    if (keep_networks_ || solid.convex || options_.edges == RoundEdges::concave) return false;
-    const CreasedInput input{mesh_, welded_, regions_, kinds_, options_.radius};
-    std::optional<CreasedSolid> made = make_creased_solid(input, s, bands_);
-    if (!made) return false;
-    solid.creased = std::uint32_t(data_->creased.size());
-    data_->creased.push_back(std::make_unique<const CreasedSolid>(std::move(*made)));
-    return true;
+  // Of each shell that is no hollow: it and its hollows, if they are for a CreasedSolid. Whoever wants networks gets
+  // local ones.
+  [[nodiscard]] std::vector<std::vector<std::uint32_t>> shells_for_creases() const {
+    std::vector<std::vector<std::uint32_t>> solids;
+    if (keep_networks_ || options_.edges == RoundEdges::concave) return solids;
+    std::vector<std::vector<std::uint32_t>> hollows = hollows_of_shells();
+    for (std::uint32_t s = 0; s < data_->solids.size(); ++s) {
+      if (is_cavity(welded_.shells[s]) || !welded_.shells[s].closed) continue;
+      if (data_->solids[s].convex && hollows[s].empty()) continue;
+      hollows[s].insert(hollows[s].begin(), s);
+      solids.push_back(std::move(hollows[s]));
+    }
+    return solids;
   }
 
-  // The space outside, rounded along its convex edges.
-  void make_filled(std::uint32_t s) {
+  // A hollow is of the smallest shell around it.
+  [[nodiscard]] std::vector<std::vector<std::uint32_t>> hollows_of_shells() const {
+    const std::vector<Shell>& shells = welded_.shells;
+    std::vector<std::vector<std::uint32_t>> hollows(shells.size());
+    for (std::uint32_t s = 0; s < shells.size(); ++s) {
+      if (!is_cavity(shells[s])) continue;
+      std::uint32_t outer = kNone;
+      for (std::uint32_t o = 0; o < shells.size(); ++o) {
+        if (!can_hold(shells[o], shells[s])) continue;
+        if (outer == kNone || std::abs(shells[o].volume) < std::abs(shells[outer].volume))
+          outer = o;
+      }
+      if (outer != kNone) hollows[outer].push_back(s);
+    }
+    return hollows;
+  }
+
+  void make_creased_solids() {
+    const std::vector<std::vector<std::uint32_t>> wanted = shells_for_creases();
+    const CreasedInput input{mesh_, welded_, regions_, kinds_, options_.radius};
+    std::vector<std::optional<MadeCreased>> made(wanted.size());
+    parallel_for(wanted.size(), {},
+                 [&](std::size_t i) { made[i] = make_creased_solid(input, wanted[i]); });
+    for (std::size_t i = 0; i < wanted.size(); ++i) {
+      if (!made[i]) continue;
+      bands_.insert(bands_.end(), made[i]->bands.begin(), made[i]->bands.end());
+      for (const std::uint32_t s : wanted[i]) join(s, wanted[i].front());
+      data_->creased.push_back(std::make_unique<const CreasedSolid>(std::move(made[i]->solid)));
+    }
+  }
+
+  // Makes a shell part of the creased solid to come, in coordinates relative to the outer one's centre.
+  void join(std::uint32_t s, std::uint32_t outer) {
     Solid& solid = data_->solids[s];
-    if (keep_networks_ || !outside_ || solid.convex) return;
+    solid.creased = std::uint32_t(data_->creased.size());
+    solid.convex = solid.exact = false;
+    if (s == outer) return;
+    solid.hollow = true;
+    const Vec3d shift = solid.center - data_->solids[outer].center;
+    for (std::uint32_t f = solid.first_face; f < solid.first_face + solid.face_count; ++f) {
+      data_->faces[f].d += dot(regions_.planes[f].normal, shift);
+    }
+    solid.center = data_->solids[outer].center;
+    solid.size = data_->solids[outer].size;
+  }
+
+  // The space outside solids, rounded along its convex edges.
+  void make_filled_solids() {
+    if (keep_networks_ || !outside_) return;
+    std::vector<std::uint32_t> wanted;
+    for (std::uint32_t s = 0; s < data_->solids.size(); ++s) {
+      const Shell& shell = welded_.shells[s];
+      if (shell.closed && !is_cavity(shell) && concave_edges_of(s) > 0) wanted.push_back(s);
+    }
     const CreasedInput input{mesh_,           outside_->welded, outside_->regions,
-                             outside_->kinds, options_.radius,  false};
-    std::optional<CreasedSolid> made = make_creased_solid(input, s, bands_);
-    if (!made) return;
+                             outside_->kinds, options_.radius,  true};
+    std::vector<std::optional<MadeCreased>> made(wanted.size());
+    parallel_for(wanted.size(), {}, [&](std::size_t i) {
+      made[i] = make_creased_solid(input, std::span(wanted).subspan(i, 1));
+    });
+    for (std::size_t i = 0; i < wanted.size(); ++i) {
+      if (!made[i]) continue;
+      bands_.insert(bands_.end(), made[i]->bands.begin(), made[i]->bands.end());
+      fill(wanted[i], std::move(made[i]->solid));
+    }
+  }
+
+  void fill(std::uint32_t s, CreasedSolid outside) {
+    Solid& solid = data_->solids[s];
     solid.filled = std::uint32_t(data_->filled.size());
-    data_->filled.push_back(std::make_unique<const FilledSolid>(std::move(*made)));
+    data_->filled.push_back(std::make_unique<const FilledSolid>(std::move(outside)));
     const std::uint64_t edges = concave_edges_of(s);
     filled_edges_ += edges;
     data_->report.rounded_edges += edges;
@@ -320,11 +386,14 @@ class RoundingMaker {
     return group;
   }
 
-  void append(const ShellNetwork& network, Solid& solid) {
+  void append(const ShellNetwork& network, std::uint32_t s) {
+    Solid& solid = data_->solids[s];
     solid.arc_count = std::uint32_t(network.arcs.size());
     solid.node_count = std::uint32_t(network.nodes.size());
+    const Vec3d shift = welded_.shells[s].center() - solid.center;  // of a hollow
     for (const NetworkArc& source : network.arcs) {
       Arc arc = source.arc;
+      arc.line.p0 = Vec3f(Vec3d(arc.line.p0) + shift);
       arc.node0 += solid.first_node;
       if (!arc.is_stub()) arc.node1 += solid.first_node;
       const std::size_t triangles = mesh_.triangles.size();  // pieces of split ones have no normals
@@ -336,7 +405,7 @@ class RoundingMaker {
     }
     for (const NetworkNode& source : network.nodes) {
       Node node;
-      node.position = Vec3f(source.position);
+      node.position = Vec3f(source.position + shift);
       node.kind = source.kind;
       data_->nodes.push_back(node);
       walls_.push_back(source.wall);

@@ -232,16 +232,20 @@ class CreasedHit {
   }
 
  private:
+  [[nodiscard]] const Face& face() const { return data_.faces[at_.face]; }
+
   // Whether a fillet lies on the face.
   [[nodiscard]] bool is_covered(Vec3d x, std::uint32_t face) const {
     return filled_ != nullptr &&
            !filled_->outside.is_kept(x, -Vec3d(data_.faces[face].normal), face);
   }
 
-  static Resolution make(Resolution::Outcome outcome, double t, Vec3d normal, Feature feature) {
+  [[nodiscard]] Resolution make(Resolution::Outcome outcome, double t, Vec3d normal,
+                                Feature feature) const {
     Resolution out;
     out.outcome = outcome;
     out.hit = {t, normal, feature};
+    if (feature == Feature::edge || feature == Feature::corner) out.hit.solid = face().solid;
     return out;
   }
   static Feature feature_of(const PipeHit& met) {
@@ -306,6 +310,19 @@ class CreasedHit {
   const CreasedSolid* inner_;
   const FilledSolid* filled_;
 };
+
+std::optional<EdgeBlend> blend_of_creased(const Rounding::Data& data, const RoundedHit& hit,
+                                          Vec3d position) {
+  const Solid& solid = data.solids[hit.solid];
+  std::optional<EdgeBlend> blend =
+      data.creased[solid.creased]->blend_at(position - solid.center, hit.normal);
+  if (!blend) return std::nullopt;
+  for (EdgeBlend::Side* const side : {&blend->a, &blend->b}) {
+    if (side->triangle >= data.face.size()) return std::nullopt;  // a piece of a split one
+    side->point += solid.center;
+  }
+  return blend;
+}
 
 // Where the walk ended.
 void finish(Resolution& out, const std::optional<WalkHit>& met, const FaceHit& at, bool entering) {
@@ -445,6 +462,7 @@ std::optional<RoundedHit> Rounding::meet_fillet(std::uint32_t box, const Ray& ra
 }
 
 std::optional<EdgeBlend> Rounding::blend_of(const RoundedHit& hit, Vec3d position) const {
+  if (hit.solid != kNone) return blend_of_creased(*data_, hit, position);
   if (hit.arc == kNone || data_->arcs[hit.arc].triangle_a == kNone) return std::nullopt;
   const Arc& arc = data_->arcs[hit.arc];
   const Vec3d na(data_->faces[arc.face_a].normal);

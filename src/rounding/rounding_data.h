@@ -83,6 +83,7 @@ struct Solid {
   bool rewired = false;  // E lost features of P: the arc nearest to a point must be searched for
   std::uint32_t creased = kNone;  // index: rounded exactly though it isn't convex
   std::uint32_t filled = kNone;   // index: its concave edges have fillets
+  bool hollow = false;            // part of the creased solid of the shell around it
 };
 
 // A solid's fillets, from the space outside it.

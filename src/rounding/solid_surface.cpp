@@ -10,12 +10,12 @@
 namespace arris {
 namespace {
 
-std::vector<Box> boxes_of(const std::vector<SurfaceTriangle>& triangles) {
+std::vector<Box> boxes_of(const std::vector<SurfaceTriangle>& triangles, double reach) {
   std::vector<Box> boxes;
   boxes.reserve(triangles.size());
   for (std::uint32_t i = 0; i < triangles.size(); ++i) {
-    const auto& [p0, p1, p2, region] = triangles[i];
-    boxes.push_back({min(p0, min(p1, p2)), max(p0, max(p1, p2)), i});
+    const auto& [p0, p1, p2, region, index] = triangles[i];
+    append_triangle_boxes({p0, p1, p2}, reach, i, boxes);
   }
   return boxes;
 }
@@ -53,14 +53,27 @@ Vec3d nearest_on_triangle(Vec3d x, const SurfaceTriangle& t) {
   return t.p0 + ab * (vb / sum) + ac * (vc / sum);
 }
 
-SolidSurface::SolidSurface(std::vector<SurfaceTriangle> triangles)
-    : triangles_(std::move(triangles)), tree_(boxes_of(triangles_)) {}
+bool is_beyond_reach(const std::array<Vec3d, 3>& corners, Vec3d normal, const SurfaceTriangle& t,
+                     double reach) {
+  const auto is_beyond = [](double h0, double h1, double h2, double limit) {
+    return std::min({h0, h1, h2}) >= limit || std::max({h0, h1, h2}) <= -limit;
+  };
+  const auto over = [&](Vec3d p) { return dot(normal, p - corners[0]); };
+  if (is_beyond(over(t.p0), over(t.p1), over(t.p2), reach)) return true;
+  const Vec3d n = cross(t.p1 - t.p0, t.p2 - t.p0);
+  const auto over_t = [&](Vec3d p) { return dot(n, p - t.p0); };
+  return is_beyond(over_t(corners[0]), over_t(corners[1]), over_t(corners[2]), reach * length(n));
+}
+
+SolidSurface::SolidSurface(std::vector<SurfaceTriangle> triangles, double reach)
+    : triangles_(std::move(triangles)), tree_(boxes_of(triangles_, reach)) {}
 
 bool SolidSurface::is_near(Vec3d x, double distance, std::uint32_t but_region) const {
   bool found = false;
   for_each_near(x - Vec3d(distance), x + Vec3d(distance), [&](const SurfaceTriangle& t) {
     if (found || t.region == but_region) return;
-    found = length_squared(x - nearest_on_triangle(x, t)) < distance * distance;
+    found = length_squared(x - nearest_on_triangle(x, t)) < distance * distance &&
+            !is_joined(but_region, t.region);
   });
   return found;
 }
@@ -83,7 +96,8 @@ SolidSurface::Exit SolidSurface::first_exit(Vec3d origin, Vec3d direction, doubl
 }
 
 std::size_t SolidSurface::bytes() const {
-  return triangles_.size() * sizeof(SurfaceTriangle) + tree_.bytes();
+  return triangles_.size() * sizeof(SurfaceTriangle) + joined_.size() * sizeof(FacePair) +
+         tree_.bytes();
 }
 
 }  // namespace arris

@@ -3,7 +3,10 @@
 // Cost       building n log n; a search visits the triangles near alone
 #pragma once
 
+#include <algorithm>
+#include <array>
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 #include "arris/math.h"
@@ -12,17 +15,32 @@
 namespace arris {
 
 struct SurfaceTriangle {
-  Vec3d p0, p1, p2;      // counter-clockwise from outside
-  std::uint32_t region;  // flat region of the mesh
+  Vec3d p0, p1, p2;         // counter-clockwise from outside
+  std::uint32_t region;     // flat region of the mesh
+  std::uint32_t index = 0;  // of the mesh
 };
 
 Vec3d nearest_on_triangle(Vec3d x, const SurfaceTriangle& t);
+// Whether it is seen at once that a triangle, of the given normal, is `reach` or more from another one.
+bool is_beyond_reach(const std::array<Vec3d, 3>& corners, Vec3d normal, const SurfaceTriangle& t,
+                     double reach);
+
+using FacePair = std::pair<std::uint32_t, std::uint32_t>;  // regions
 
 class SolidSurface {
  public:
-  explicit SolidSurface(std::vector<SurfaceTriangle> triangles);
+  // reach: how far searches look about.
+  SolidSurface(std::vector<SurfaceTriangle> triangles, double reach);
 
-  // Whether a triangle of another region is nearer to x than `distance`.
+  // joined: see smooth_reach.h
+  void set_joined(std::vector<FacePair> joined) { joined_ = std::move(joined); }
+  // Whether what touches a face may cut into another one.
+  [[nodiscard]] bool is_joined(std::uint32_t face, std::uint32_t other) const {
+    return !joined_.empty() && std::ranges::binary_search(joined_, FacePair(face, other));
+  }
+  [[nodiscard]] bool is_curved() const { return !joined_.empty(); }
+
+  // Whether a triangle of another region, one that isn't joined to it, is nearer to x than `distance`.
   [[nodiscard]] bool is_near(Vec3d x, double distance, std::uint32_t but_region) const;
 
   // The t > after at which the ray first leaves through a triangle, and its region; infinity if it doesn't. A ray
@@ -33,7 +51,7 @@ class SolidSurface {
   };
   [[nodiscard]] Exit first_exit(Vec3d origin, Vec3d direction, double after) const;
 
-  // Visits every triangle whose box reaches into this one, and some beside it.
+  // Visits every triangle whose box reaches into this one, and some beside it; some more than once.
   template <class Visit>
   void for_each_near(Vec3d low, Vec3d high, Visit&& visit) const {
     tree_.for_each_near(low, high, [&](std::uint32_t i) { visit(triangles_[i]); });
@@ -43,6 +61,7 @@ class SolidSurface {
 
  private:
   std::vector<SurfaceTriangle> triangles_;
+  std::vector<FacePair> joined_;  // sorted
   BoxTree tree_;
 };
 

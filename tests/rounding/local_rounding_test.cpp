@@ -16,6 +16,7 @@
 #include "edges/welded_mesh.h"
 #include "rounding/clearance.h"
 #include "rounding/rounding_data.h"
+#include "support/ball_oracle.h"
 #include "support/nonconvex_solids.h"
 #include "support/rounded_ray.h"
 
@@ -89,6 +90,14 @@ class Judge {
 
   [[nodiscard]] const RoundingReport& report() const { return rounding_->report(); }
 
+  // Where exactly rounded solids are thin, balls decide.
+  [[nodiscard]] bool is_void_by_definition(Vec3d x) const {
+    if (rounding_->data().creased.empty()) return false;
+    const double radius = rounding_->data().radius;
+    Random rng(1);
+    return BallOracle(mesh_.view(), radius).margin(x, rng) < 0.003 * radius;
+  }
+
   void judge(const Ray& ray, Judgement& out, const std::string& label) const {
     const std::vector<MeshHit> sharp = intersect_mesh(ray, mesh_.view());
     if (!alternates(ray, sharp)) return;  // through an edge, or within a face
@@ -104,9 +113,11 @@ class Judge {
       const double before = slack / cosine(ray, sharp[i]),
                    after = slack / cosine(ray, sharp[i + 1]);
       inside = inside || (end > from - before && end < sharp[i + 1].t + after);
-      for (int k = 1; k < 16 && to > from; ++k)
-        far =
-            std::max(far, beyond_edges(ray.origin + ray.direction * (from + (to - from) * k / 16)));
+      for (int k = 1; k < 16 && to > from; ++k) {
+        const Vec3d x = ray.origin + ray.direction * (from + (to - from) * k / 16);
+        const double beyond = beyond_edges(x);
+        if (beyond > far && !is_void_by_definition(x)) far = beyond;
+      }
     }
     const auto note = [&](const char* what, double by) {
       out.examples.push_back(
