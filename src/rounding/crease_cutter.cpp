@@ -110,7 +110,7 @@ void CreaseCutter::cut_reached(const CreaseCurve& curve, std::vector<CreaseCurve
   surface_.for_each_near(low - reach, high + reach,
                          [&](const SurfaceTriangle& t) { near_.push_back(&t); });
   std::ranges::sort(near_);
-  near_.erase(std::ranges::unique(near_).begin(), near_.end());
+  near_.erase(std::unique(near_.begin(), near_.end()), near_.end());
   at_.assign({curve.u0, curve.u1});
   for (const SurfaceTriangle* t : near_) {
     if (t->region != curve.face_a && t->region != curve.face_b) add_reaches(curve, *t);

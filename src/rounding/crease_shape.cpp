@@ -37,7 +37,8 @@ class ContactFinder {
     });
     // The nearest of those in about one direction is what is touched.
     std::ranges::sort(found, {}, [](const auto& f) { return f.first; });
-    for (const auto& [distance, d] : found) {
+    for (const auto& [distance, toward] : found) {
+      const Vec3d d = toward;
       const auto is_same = [&](Vec3d known) { return length(known - d) < same_; };
       if (std::ranges::none_of(contacts, is_same)) contacts.push_back(d);
     }

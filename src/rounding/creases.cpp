@@ -73,12 +73,13 @@ class CreaseFinder {
 
   std::optional<std::vector<CreaseCurve>> run() {
     std::vector<TrianglePair> pairs = crossing_pairs();
-    const auto within = std::ranges::stable_partition(
-        pairs, [&](const TrianglePair& p) { return !are_joined(p.faces.first, p.faces.second); });
-    std::vector<CreaseCurve> out = face_face_creases({pairs.begin(), within.begin()});
+    const auto within = std::stable_partition(
+        pairs.begin(), pairs.end(),
+        [&](const TrianglePair& p) { return !are_joined(p.faces.first, p.faces.second); });
+    std::vector<CreaseCurve> out = face_face_creases({pairs.begin(), within});
     if (!have_creases(out)) return std::nullopt;
     collect_ended(out);
-    pairs.erase(pairs.begin(), within.begin());
+    pairs.erase(pairs.begin(), within);
     std::erase_if(pairs, [&](const TrianglePair& p) {
       return !is_ended(p.faces.first) && !is_ended(p.faces.second);
     });
@@ -180,7 +181,7 @@ class CreaseFinder {
     std::vector<std::uint32_t> vertices;
     for (const ConcaveEdge& e : edges_) vertices.insert(vertices.end(), {e.vertex0, e.vertex1});
     std::ranges::sort(vertices);
-    vertices.erase(std::ranges::unique(vertices).begin(), vertices.end());
+    vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
     corners_.resize(vertices.size());
     const auto corner_at = [&](std::uint32_t vertex) -> Corner* {
       const auto found = std::ranges::lower_bound(vertices, vertex);
@@ -232,7 +233,7 @@ class CreaseFinder {
         offsets_.size(), kTrianglesAtOnce,
         [&](std::size_t i, auto& list) { add_crossing(std::uint32_t(i), list); });
     std::ranges::sort(pairs);
-    pairs.erase(std::ranges::unique(pairs).begin(), pairs.end());
+    pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
     return pairs;
   }
 
@@ -259,7 +260,7 @@ class CreaseFinder {
   void collect_ended(const std::vector<CreaseCurve>& creases) {
     for (const CreaseCurve& c : creases) ended_.insert(ended_.end(), {c.face_a, c.face_b});
     std::ranges::sort(ended_);
-    ended_.erase(std::ranges::unique(ended_).begin(), ended_.end());
+    ended_.erase(std::unique(ended_.begin(), ended_.end()), ended_.end());
   }
   [[nodiscard]] bool is_ended(std::uint32_t face) const {
     return std::ranges::binary_search(ended_, face);
@@ -363,7 +364,7 @@ class CreaseFinder {
       near.emplace_back(in_.surface.triangles()[i].region, i);
     });
     std::ranges::sort(near);
-    near.erase(std::ranges::unique(near).begin(), near.end());
+    near.erase(std::unique(near.begin(), near.end()), near.end());
     std::vector<std::uint32_t> triangles;
     for (std::size_t i = 0; i < near.size(); ++i) {
       triangles.push_back(near[i].second);

@@ -97,7 +97,7 @@ class CreasedMaker {
     }
     std::ranges::sort(smooth);
     std::ranges::sort(sharp);
-    smooth.erase(std::ranges::unique(smooth).begin(), smooth.end());
+    smooth.erase(std::unique(smooth.begin(), smooth.end()), smooth.end());
     surface.set_joined(find_smooth_reach({surface, smooth, sharp, in_.regions, in_.radius}));
   }
 

@@ -14,6 +14,13 @@ constexpr std::size_t kFacesAtOnce = 64;
 // Relative to the radius: what is no nearer than this short of it only touches.
 constexpr double kTouching = 1e-6;
 
+// Of sorted pairs, those whose first is the face.
+std::span<const FacePair> pairs_of(std::span<const FacePair> sorted, std::uint32_t face) {
+  const auto first = std::ranges::lower_bound(sorted, face, {}, &FacePair::first);
+  const auto last = std::ranges::upper_bound(sorted, face, {}, &FacePair::first);
+  return {first, last};
+}
+
 class ReachFinder {
  public:
   explicit ReachFinder(const SmoothReachInput& input) : in_(input) {
@@ -38,8 +45,8 @@ class ReachFinder {
     const std::vector<std::uint32_t> near = faces_near(face);
     std::vector<std::uint32_t> reached{face};
     for (std::size_t i = 0; i < reached.size(); ++i) {
-      const auto neighbors = std::ranges::equal_range(in_.smooth, reached[i], {}, &FacePair::first);
-      for (const auto& [at, next] : neighbors) {
+      for (const FacePair& pair : pairs_of(in_.smooth, reached[i])) {
+        const std::uint32_t next = pair.second;
         if (std::ranges::count(reached, next) > 0) continue;
         if (!std::ranges::binary_search(near, next)) continue;
         if (dot(normal_of(face), normal_of(next)) < kMostTurn) continue;
@@ -72,9 +79,8 @@ class ReachFinder {
   [[nodiscard]] std::vector<std::uint32_t> faces_near(std::uint32_t face) const {
     const Vec3d normal = normal_of(face), reach(in_.radius);
     std::vector<std::uint32_t> near;
-    for (const auto& [region, index] :
-         std::ranges::equal_range(by_region_, face, {}, &FacePair::first)) {
-      const SurfaceTriangle& own = in_.surface.triangles()[index];
+    for (const FacePair& pair : pairs_of(by_region_, face)) {
+      const SurfaceTriangle& own = in_.surface.triangles()[pair.second];
       const Vec3d down = normal * in_.radius;
       const std::array<Vec3d, 3> offset{own.p0 - down, own.p1 - down, own.p2 - down};
       const Vec3d low = min(offset[0], min(offset[1], offset[2])) - reach;
@@ -84,7 +90,7 @@ class ReachFinder {
       });
     }
     std::ranges::sort(near);
-    near.erase(std::ranges::unique(near).begin(), near.end());
+    near.erase(std::unique(near.begin(), near.end()), near.end());
     return near;
   }
 
