@@ -52,13 +52,17 @@ std::optional<Span> meet_capsule(Vec3d origin, Vec3d direction, Vec3d p0, Vec3d 
   return all;
 }
 
+ArcEnds ends_of(const CreaseCurve& curve) {
+  return {curve.at(curve.u0), curve.at(curve.u1)};
+}
+
 }  // namespace
 
 std::vector<CreasePipes::Part> CreasePipes::parts_of(std::span<const CreaseCurve> creases) {
   std::vector<Part> parts;
   for (const CreaseCurve& whole : creases) {
     if (whole.is_line) {
-      parts.push_back({whole, 0});
+      parts.push_back({whole, 0, ends_of(whole)});
       continue;
     }
     const int count = std::max(1, int(std::ceil((whole.u1 - whole.u0) / kPartAngle)));
@@ -70,7 +74,7 @@ std::vector<CreasePipes::Part> CreasePipes::parts_of(std::span<const CreaseCurve
       // An affine image of a circle's arc.
       const double bulge =
           (1 - std::cos(0.5 * step)) * std::sqrt(length_squared(whole.a) + length_squared(whole.b));
-      parts.push_back({part, bulge});
+      parts.push_back({part, bulge, ends_of(part)});
     }
   }
   return parts;
@@ -79,8 +83,7 @@ std::vector<CreasePipes::Part> CreasePipes::parts_of(std::span<const CreaseCurve
 std::vector<Box> CreasePipes::boxes_of(std::span<const Part> parts, double radius) {
   std::vector<Box> boxes;
   for (std::uint32_t i = 0; i < parts.size(); ++i) {
-    const CreaseCurve& curve = parts[i].curve;
-    const Vec3d p0 = curve.at(curve.u0), p1 = curve.at(curve.u1);
+    const auto [p0, p1] = parts[i].ends;
     const Vec3d reach(radius + parts[i].bulge);
     boxes.push_back({min(p0, p1) - reach, max(p0, p1) + reach, i});
   }
@@ -94,15 +97,18 @@ CreasePipes::CreasePipes(std::vector<CreaseCurve> creases, double radius)
       tree_(boxes_of(parts_, radius)) {}
 
 // From one t of a ray towards another, either way: where it first comes within r of the curve.
-std::optional<double> CreasePipes::step_to_arc(const CreaseCurve& curve, Vec3d origin,
-                                               Vec3d direction, double from, double to) const {
+std::optional<double> CreasePipes::step_to_arc(const Part& part, Vec3d origin, Vec3d direction,
+                                               double from, double to) const {
+  const CreaseCurve& curve = part.curve;
   constexpr int kMostSteps = 200;
   const double way = to < from ? -1 : 1;
   const double speed = way * length(direction);
   double t = from;
+  double u = 0.5 * (curve.u0 + curve.u1);
   for (int step = 0; step <= kMostSteps; ++step) {
     const Vec3d x = origin + direction * t;
-    const double left = length(x - curve.at(nearest_parameter(curve, x))) - r_;
+    u = nearest_parameter(curve, part.ends, x, u);
+    const double left = length(x - curve.at(u)) - r_;
     if (left <= 1e-9 * r_) return t;
     t += left / speed;
     if ((t - to) * way > 0) break;
@@ -115,13 +121,13 @@ std::optional<PipeHit> CreasePipes::first_entry(Vec3d origin, Vec3d direction, d
   tree_.for_each_along(origin, direction, 0, end, [&](std::uint32_t i) {
     const Part& part = parts_[i];
     const CreaseCurve& curve = part.curve;
-    const Vec3d p0 = curve.at(curve.u0), p1 = curve.at(curve.u1);
+    const auto [p0, p1] = part.ends;
     const std::optional<Span> span = meet_capsule(origin, direction, p0, p1, r_ + part.bulge);
     if (!span || span->t1 < 0 || span->t0 > end) return;
     double t = std::max(span->t0, 0.0);
     if (!curve.is_line) {
       const std::optional<double> met =
-          step_to_arc(curve, origin, direction, t, std::min(span->t1, end));
+          step_to_arc(part, origin, direction, t, std::min(span->t1, end));
       if (!met) return;
       t = *met;
     }
@@ -141,7 +147,7 @@ std::optional<PipeSpan> CreasePipes::span_of(std::uint32_t index, Vec3d origin,
   const Part& part = parts_[index];
   const CreaseCurve& curve = part.curve;
   const std::optional<Span> span =
-      meet_capsule(origin, direction, curve.at(curve.u0), curve.at(curve.u1), r_ + part.bulge);
+      meet_capsule(origin, direction, part.ends.p0, part.ends.p1, r_ + part.bulge);
   if (!span) return std::nullopt;
   const auto place_at = [&](double t) {
     const Vec3d x = origin + direction * t;
@@ -149,9 +155,9 @@ std::optional<PipeSpan> CreasePipes::span_of(std::uint32_t index, Vec3d origin,
     return PipePlace{t, u, normalize(x - curve.at(u))};
   };
   if (curve.is_line) return PipeSpan{place_at(span->t0), place_at(span->t1)};
-  const std::optional<double> t0 = step_to_arc(curve, origin, direction, span->t0, span->t1);
+  const std::optional<double> t0 = step_to_arc(part, origin, direction, span->t0, span->t1);
   if (!t0) return std::nullopt;
-  const std::optional<double> t1 = step_to_arc(curve, origin, direction, span->t1, *t0);
+  const std::optional<double> t1 = step_to_arc(part, origin, direction, span->t1, *t0);
   if (!t1) return std::nullopt;
   return PipeSpan{place_at(*t0), place_at(*t1)};
 }

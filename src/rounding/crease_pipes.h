@@ -69,13 +69,14 @@ class CreasePipes {
   struct Part {
     CreaseCurve curve;
     double bulge;  // of the arc above its chord
+    ArcEnds ends;  // of a segment, too
   };
 
   static std::vector<Part> parts_of(std::span<const CreaseCurve> creases);
   static std::vector<Box> boxes_of(std::span<const Part> parts, double radius);
 
-  [[nodiscard]] std::optional<double> step_to_arc(const CreaseCurve& curve, Vec3d origin,
-                                                  Vec3d direction, double from, double to) const;
+  [[nodiscard]] std::optional<double> step_to_arc(const Part& part, Vec3d origin, Vec3d direction,
+                                                  double from, double to) const;
 
   std::vector<CreaseCurve> creases_;
   double r_;

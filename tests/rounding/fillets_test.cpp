@@ -20,16 +20,16 @@
 namespace arris::oracle {
 namespace {
 
-struct Tally {
+struct FilletTally {
   int rays = 0, fillets = 0, from_ends = 0;
   int wrong = 0;
   std::vector<std::string> examples;
 };
 
 // Rays at one solid's edges and corners.
-class Shooter {
+class FilletShooter {
  public:
-  Shooter(const CreasedCase& solid, RoundEdges edges, std::uint64_t seed)
+  FilletShooter(const CreasedCase& solid, RoundEdges edges, std::uint64_t seed)
       : mesh_(solid.mesh.view()),
         name_(solid.mesh.name),
         r_(solid.radius),
@@ -67,7 +67,7 @@ class Shooter {
     return {target - d * (20 * r_), d};
   }
 
-  void shoot(int rays, Tally& tally) {
+  void shoot(int rays, FilletTally& tally) {
     for (int i = 0; i < rays; ++i) judge(make_ray(i), tally);
   }
 
@@ -92,7 +92,7 @@ class Shooter {
     }
   }
 
-  void judge(const Ray& ray, Tally& tally) {
+  void judge(const Ray& ray, FilletTally& tally) {
     if (inside_by(ray.origin) > -0.1) return;
     const auto hit = trace(ray, object());
     ++tally.rays;
@@ -140,12 +140,12 @@ class Shooter {
 };
 
 void expect_agreement(RoundEdges edges) {
-  Tally all;
+  FilletTally all;
   for (const CreasedCase& solid : make_creased_cases()) {
     SCOPED_TRACE(solid.mesh.name);
-    Shooter shooter(solid, edges, 11);
+    FilletShooter shooter(solid, edges, 11);
     ASSERT_FALSE(shooter.rounding().data().filled.empty());
-    Tally tally;
+    FilletTally tally;
     shooter.shoot(60, tally);
     EXPECT_GT(tally.fillets, 2);
     all.rays += tally.rays;
@@ -171,7 +171,7 @@ TEST(Fillets, rays_from_inside_leave_where_others_enter) {
   int all = 0, from_solid = 0;
   for (const CreasedCase& solid : make_creased_cases()) {
     SCOPED_TRACE(solid.mesh.name);
-    Shooter shooter(solid, RoundEdges::concave, 3);
+    FilletShooter shooter(solid, RoundEdges::concave, 3);
     const double r = solid.radius;
     int left = 0;
     for (int i = 0; i < 4000 && left < 30; ++i) {
@@ -206,7 +206,7 @@ TEST(Fillets, rays_from_inside_leave_where_others_enter) {
 TEST(Fillets, rays_that_leave_a_fillet_do_not_meet_it_where_they_start) {
   for (const CreasedCase& solid : make_creased_cases()) {
     SCOPED_TRACE(solid.mesh.name);
-    Shooter shooter(solid, RoundEdges::both, 7);
+    FilletShooter shooter(solid, RoundEdges::both, 7);
     int left = 0;
     for (int i = 0; i < 1500; ++i) {
       const Ray ray = shooter.make_ray(i);
