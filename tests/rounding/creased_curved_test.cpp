@@ -221,11 +221,11 @@ TEST(CreasedCurved, no_ray_passes_where_a_ball_fits) {
     for (const TriangleSoup& mesh : make_nonconvex_solids(seed)) {
       if (mesh.name == "cells" || mesh.name == "spiky ball") continue;
       for (const double part : {0.004, 0.015}) {
-        Shooter shooter(mesh, part * mesh.size(), seed, radians(30));
+        BallShooter shooter(mesh, part * mesh.size(), seed, radians(30));
         if (shooter.rounding().report().smooth_edges == 0) continue;
         if (shooter.rounding().data().creased.empty()) continue;
         ++creased;
-        Tally tally;
+        BallTally tally;
         shooter.shoot(12, tally);
         rays += tally.rays;
         for (const std::string& example : tally.examples) {

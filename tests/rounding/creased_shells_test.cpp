@@ -192,10 +192,10 @@ TEST(CreasedShells, hollow_solids_agree_with_the_balls_that_fit) {
   std::vector<std::string> examples;
   for (const TriangleSoup& mesh : make_hollow_solids()) {
     SCOPED_TRACE(mesh.name);
-    Shooter shooter(mesh, 0.12, 5);
+    BallShooter shooter(mesh, 0.12, 5);
     ASSERT_EQ(shooter.rounding().data().creased.size(), mesh.name == "box in a box" ? 2U : 1U);
     EXPECT_EQ(shooter.rounding().report().exact_solids, shooter.rounding().report().solids);
-    Tally tally;
+    BallTally tally;
     shooter.shoot(80, tally);
     EXPECT_GT(tally.moved, 8);
     rays += tally.rays;

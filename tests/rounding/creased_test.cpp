@@ -16,12 +16,12 @@ namespace arris::oracle {
 namespace {
 
 TEST(Creased, rays_agree_with_the_balls_that_fit) {
-  Tally all;
+  BallTally all;
   for (const CreasedCase& c : make_creased_cases()) {
     SCOPED_TRACE(c.mesh.name);
-    Shooter shooter(c.mesh, c.radius, 5);
+    BallShooter shooter(c.mesh, c.radius, 5);
     ASSERT_FALSE(shooter.rounding().data().creased.empty());
-    Tally tally;
+    BallTally tally;
     shooter.shoot(160, tally);
     EXPECT_GT(tally.moved, 30);
     all.rays += tally.rays;
@@ -35,7 +35,7 @@ TEST(Creased, rays_agree_with_the_balls_that_fit) {
 TEST(Creased, rays_that_leave_the_surface_do_not_meet_it_where_they_start) {
   for (const CreasedCase& c : make_creased_cases()) {
     SCOPED_TRACE(c.mesh.name);
-    Shooter shooter(c.mesh, c.radius, 7);
+    BallShooter shooter(c.mesh, c.radius, 7);
     int left = 0;
     for (int i = 0; i < 2000; ++i) {
       const Ray ray = shooter.make_ray(i);

@@ -22,17 +22,17 @@
 
 namespace arris::oracle {
 
-struct Tally {
+struct BallTally {
   int rays = 0, kept = 0, moved = 0, passed = 0;
   int wrong = 0;
   std::vector<std::string> examples;
 };
 
 // Rays at the edges and corners of a mesh.
-class Shooter {
+class BallShooter {
  public:
-  Shooter(const TriangleSoup& mesh, double radius, std::uint64_t seed,
-          double min_angle = radians(5))
+  BallShooter(const TriangleSoup& mesh, double radius, std::uint64_t seed,
+              double min_angle = radians(5))
       : mesh_(mesh.view()), name_(mesh.name), r_(radius), oracle_(mesh_, radius), rng_(seed) {
     RoundingOptions options;
     options.radius = r_;
@@ -53,7 +53,7 @@ class Shooter {
     return {target - d * (20 * r_), d};
   }
 
-  void shoot(int rays, Tally& tally) {
+  void shoot(int rays, BallTally& tally) {
     for (int i = 0; i < rays; ++i) {
       judge(make_ray(i), tally);
     }
@@ -71,7 +71,7 @@ class Shooter {
     }
   }
 
-  void judge(const Ray& ray, Tally& tally) {
+  void judge(const Ray& ray, BallTally& tally) {
     const std::vector<MeshHit> sharp = intersect_mesh(ray, mesh_);
     if (sharp.empty()) return;
     const auto hit = trace(ray, {mesh_, rounding_.get()});
