@@ -41,7 +41,7 @@ double nearest_parameter(const CreaseCurve& curve, Vec3d x);
 struct ArcEnds {
   Vec3d p0, p1;
 };
-double nearest_parameter(const CreaseCurve& arc, const ArcEnds& ends, Vec3d x, double guess);
+double nearest_parameter(const CreaseCurve& curve, const ArcEnds& ends, Vec3d x, double guess);
 
 // Lines and ellipses have their whole extent, or [−extent, extent].
 std::optional<CreaseCurve> face_face_crease(const Plane& a, const Plane& b, double radius,

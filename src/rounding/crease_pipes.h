@@ -56,7 +56,7 @@ class CreasePipes {
   // How far it lies above its chord.
   [[nodiscard]] double bulge_of(std::uint32_t part) const { return parts_[part].bulge; }
   // The places between which a ray's whole line is within r of a part.
-  [[nodiscard]] std::optional<PipeSpan> span_of(std::uint32_t part, Vec3d origin,
+  [[nodiscard]] std::optional<PipeSpan> span_of(std::uint32_t index, Vec3d origin,
                                                 Vec3d direction) const;
   // Whether a crease is nearer to x than `distance`, at most r.
   [[nodiscard]] bool holds(Vec3d x, double distance) const;

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <optional>
+#include <tuple>
 #include <utility>
 
 #include "base/parallel_collect.h"
@@ -45,7 +46,10 @@ struct TrianglePair {
   FacePair faces;
   std::uint32_t a, b;  // triangles of these
 
-  friend auto operator<=>(const TrianglePair&, const TrianglePair&) = default;
+  friend bool operator==(const TrianglePair&, const TrianglePair&) = default;
+  friend bool operator<(const TrianglePair& p, const TrianglePair& q) {
+    return std::tie(p.faces, p.a, p.b) < std::tie(q.faces, q.a, q.b);
+  }
 };
 
 struct Interval {
@@ -232,7 +236,7 @@ class CreaseFinder {
     std::vector<TrianglePair> pairs = parallel_collect<TrianglePair>(
         offsets_.size(), kTrianglesAtOnce,
         [&](std::size_t i, auto& list) { add_crossing(std::uint32_t(i), list); });
-    std::ranges::sort(pairs);
+    std::sort(pairs.begin(), pairs.end());
     pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
     return pairs;
   }

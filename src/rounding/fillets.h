@@ -37,7 +37,7 @@ class Fillets {
     double t_min, t_max;
     bool entries, exits;
   };
-  [[nodiscard]] std::optional<FilletCrossing> meet(std::uint32_t part, Vec3d origin,
+  [[nodiscard]] std::optional<FilletCrossing> meet(std::uint32_t index, Vec3d origin,
                                                    Vec3d direction, const Wanted& wanted) const;
   [[nodiscard]] std::size_t bytes() const { return parts_.size() * sizeof(Part); }
 
