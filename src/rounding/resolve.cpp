@@ -222,6 +222,10 @@ class CreasedHit {
 
   // Nothing: the local network decides.
   [[nodiscard]] std::optional<Resolution> resolve(const Ray& ray) const {
+    // From a local rounding's void: the solid is closed, and its inside is not met.
+    if (inner_ == nullptr && !entering_ && start_ == RayStart::outside) {
+      return make(Resolution::Outcome::passed, at_.t, normal_, Feature::face);
+    }
     const bool covered = is_covered(at_.x, at_.face);
     const bool kept = inner_ == nullptr || inner_->is_kept(at_.x, normal_, at_.face);
     if (covered && (entering_ || kept)) return through_fillet(kept);

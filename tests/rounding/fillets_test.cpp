@@ -225,5 +225,31 @@ TEST(Fillets, rays_that_leave_a_fillet_do_not_meet_it_where_they_start) {
   }
 }
 
+// Arms thinner than the ball: convex edges are rounded locally beside the fillet.
+TEST(Fillets, rays_that_leave_local_roundings_beside_a_fillet_do_not_meet_the_inside) {
+  const double w = 0.25;
+  const Outline l{{0, 0}, {2, 0}, {2, w}, {w, w}, {w, 2}, {0, 2}};
+  const CreasedCase thin{prism_over("thin L", l, {1, 1, 0}), 0.15};
+  FilletShooter shooter(thin, RoundEdges::both, 5);
+  ASSERT_TRUE(shooter.rounding().data().creased.empty());
+  ASSERT_FALSE(shooter.rounding().data().filled.empty());
+  int left = 0;
+  for (int i = 0; i < 4000; ++i) {
+    const Ray ray = shooter.make_ray(i);
+    const auto hit = trace(ray, shooter.object());
+    if (!hit || (hit->feature != Feature::edge && hit->feature != Feature::corner)) continue;
+    if (dot(ray.direction, hit->normal) > -1e-3) continue;
+    const Vec3d x = ray.origin + ray.direction * hit->t;
+    for (const MeshHit& next : intersect_mesh({x, hit->normal}, shooter.object().mesh)) {
+      if (dot(shooter.rounding().face_normal(next.triangle), hit->normal) < 0) continue;
+      const Resolution met = shooter.rounding().resolve({x, hit->normal}, next, RayStart::outside);
+      EXPECT_EQ(met.outcome, Resolution::Outcome::passed) << i;
+      ++left;
+      break;
+    }
+  }
+  EXPECT_GT(left, 20);
+}
+
 }  // namespace
 }  // namespace arris::oracle
