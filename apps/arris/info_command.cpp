@@ -40,7 +40,16 @@ nlohmann::ordered_json to_json(const EdgeCounts& e) {
 nlohmann::ordered_json to_json(const RoundingSummary& r) {
   std::vector<std::string> notes;
   for (const RoundingNote& note : r.notes) notes.push_back(note.text());
-  return {{"radius", r.radius}, {"edges", r.edges}, {"corners", r.corners}, {"notes", notes}};
+  auto clamped = nlohmann::ordered_json::array();
+  for (const ClampedEdge& edge : r.clamped) {
+    clamped.push_back(
+        {{"from", to_json(edge.from)}, {"to", to_json(edge.to)}, {"radius", edge.radius}});
+  }
+  return {{"radius", r.radius},
+          {"edges", r.edges},
+          {"corners", r.corners},
+          {"notes", notes},
+          {"clamped", clamped}};
 }
 
 nlohmann::ordered_json to_json(const ObjectReport& o, const RoundingSummary* rounding) {

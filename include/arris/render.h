@@ -65,6 +65,7 @@ struct RoundingSummary {
   double radius = 0;  // world units; 0: not rounded
   std::uint64_t edges = 0, corners = 0;
   std::vector<RoundingNote> notes;  // docs/rounding.md lists them
+  std::vector<ClampedEdge> clamped;  // in world space
 };
 
 struct PrepareStats {

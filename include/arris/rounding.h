@@ -123,12 +123,19 @@ struct RoundingNote {
   }
 };
 
+// An edge of the mesh whose radius has been made smaller because there is no room for it.
+struct ClampedEdge {
+  Vec3d from, to;     // in the mesh's space
+  double radius = 0;  // 0: it stays sharp
+};
+
 struct RoundingReport {
   std::uint64_t solids = 0, convex_solids = 0, exact_solids = 0, open_solids = 0;
   std::uint64_t rounded_edges = 0, rounded_corners = 0;
   std::uint64_t concave_edges = 0, smooth_edges = 0, boundary_edges = 0, nonmanifold_edges = 0;
   std::uint64_t bytes = 0;
   std::vector<RoundingNote> notes;
+  std::vector<ClampedEdge> clamped;
 };
 
 class Rounding {

@@ -22,6 +22,10 @@ void end_if_stopped(const std::atomic<bool>* stop) {
   }
 }
 
+void run_isolated(const std::function<void()>& body) {
+  tbb::this_task_arena::isolate([&] { body(); });
+}
+
 void run_parallel(std::size_t count, const ParallelOptions& options, ParallelCall call,
                   const void* body) {
   HappensBefore fork;

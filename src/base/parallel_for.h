@@ -9,6 +9,7 @@
 
 #include <atomic>
 #include <cstddef>
+#include <functional>
 
 namespace arris {
 
@@ -24,6 +25,9 @@ void end_if_stopped(const std::atomic<bool>* stop);
 // Of the threads that are asked for, those there are processors for: TBB would warn of the rest, and run them
 // as little.
 int usable_threads(int wanted);
+
+// Loops within it wait for their own calls alone, and don't begin calls of loops around: what it holds locked stays so.
+void run_isolated(const std::function<void()>& body);
 
 using ParallelCall = void (*)(const void* body, std::size_t index);
 void run_parallel(std::size_t count, const ParallelOptions& options, ParallelCall call,

@@ -124,7 +124,7 @@ class Mesher {
       out_.corners += task.result.rounded_corners;
       out_.summaries.push_back({object.name, i, task.options.radius * task.scale.value_or(1),
                                 task.result.rounded_edges, task.result.rounded_corners,
-                                task.result.notes});
+                                task.result.notes, {}});
     }
   }
 

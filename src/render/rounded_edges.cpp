@@ -70,7 +70,7 @@ class Outline {
       emit(line.a, line.b, line.void_depth);
     }
     if (depths_ == VoidDepths::found) return;  // for shadows, to which only outlines matter
-    for (const CreaseGroove& groove : solid.shape.grooves) {
+    for (const CreaseGroove& groove : solid.shape().grooves) {
       const Vec3d to_eye = eye - groove.p0;
       if (dot(groove.normal0, to_eye) > 0 || dot(groove.normal1, to_eye) > 0) {
         emit(groove.p0, groove.p1, 0);

@@ -185,9 +185,29 @@ class Maker {
       out_.corners += report.rounded_corners;
       out_.summaries.push_back({object.name, r.object.index,
                                 task.options.radius * task.scale.value_or(1), report.rounded_edges,
-                                report.rounded_corners, report.notes});
+                                report.rounded_corners, report.notes,
+                                clamped_in_world(task, r, object)});
     }
     out_.roundings.push_back(std::move(task.result));
+  }
+
+  // The rounding was made in the object's space, in the world's, or in that without the object's translation.
+  [[nodiscard]] static std::vector<ClampedEdge> clamped_in_world(const Task& task,
+                                                                 const GeometryRecord& record,
+                                                                 const Object& object) {
+    Affine3d to_world;
+    if (task.scale) {
+      to_world = object.world_from_object;
+    } else if (record.instanced) {
+      to_world.translation = object.world_from_object.translation;
+    }
+    std::vector<ClampedEdge> edges = task.result->report().clamped;
+    for (ClampedEdge& edge : edges) {
+      edge.from = transform_point(to_world, edge.from);
+      edge.to = transform_point(to_world, edge.to);
+      edge.radius *= task.scale.value_or(1);
+    }
+    return edges;
   }
 
   void set_frame(RoundedGeometry& g, const RoundingFrame& frame) {

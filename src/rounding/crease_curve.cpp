@@ -141,6 +141,27 @@ double nearest_parameter(const CreaseCurve& curve, const ArcEnds& ends, Vec3d x,
   return nearest_parameter(curve, x);
 }
 
+// Newton's method from the angle about its centre.
+double distance_to(const CreaseCurve& part, Vec3d x) {
+  if (part.is_line) return length(x - part.at(nearest_parameter(part, x)));
+  const Vec3d offset = x - part.center;
+  const double p = dot(offset, part.a), q = dot(offset, part.b);
+  const double aa = length_squared(part.a), bb = length_squared(part.b);
+  const double middle = 0.5 * (part.u0 + part.u1);
+  double u = std::atan2(q / bb, p / aa);
+  u = std::clamp(u + 2 * kPi * std::round((middle - u) / (2 * kPi)), part.u0, part.u1);
+  for (int i = 0; i < 3; ++i) {
+    const double c = std::cos(u), s = std::sin(u);
+    const double slope = (bb - aa) * s * c + p * s - q * c;
+    const double bend = (bb - aa) * (c * c - s * s) + p * c + q * s;
+    if (!(bend > 0)) break;
+    const double before = u;
+    u = std::clamp(u - slope / bend, part.u0, part.u1);
+    if (std::abs(u - before) < 1e-7) break;
+  }
+  return length(x - part.at(u));
+}
+
 std::optional<CreaseCurve> face_face_crease(const Plane& a, const Plane& b, double radius,
                                             Vec3d near, double extent) {
   const Vec3d direction = cross(a.normal, b.normal);

@@ -44,6 +44,9 @@ struct ArcEnds {
 double nearest_parameter(const CreaseCurve& curve, const ArcEnds& ends, Vec3d x, double guess);
 
 // Lines and ellipses have their whole extent, or [−extent, extent].
+// The distance from a segment, or from a short part of an arc.
+double distance_to(const CreaseCurve& part, Vec3d x);
+
 std::optional<CreaseCurve> face_face_crease(const Plane& a, const Plane& b, double radius,
                                             Vec3d near, double extent);
 struct EdgeLine {

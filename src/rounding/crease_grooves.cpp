@@ -7,7 +7,7 @@
 #include <limits>
 #include <span>
 
-#include "rounding/crease_outline.h"
+#include "base/parallel_collect.h"
 
 namespace arris {
 namespace {
@@ -25,6 +25,9 @@ constexpr double kStep = 0.125;
 // In radii: chords of one groove lie so near to each other.
 constexpr double kSameGroove = 0.01;
 
+// Stretches that one thread looks at at a time.
+constexpr std::size_t kStretchesAtOnce = 4;
+
 // A place of a pipe: along it, and across from a to b.
 struct PipePlace {
   double u, v;
@@ -32,23 +35,24 @@ struct PipePlace {
 
 class GrooveFinder {
  public:
-  explicit GrooveFinder(const CreasedSolid& solid) : solid_(solid), r_(solid.radius) {
+  GrooveFinder(const CreasedSolid& solid, const CreaseShape& shape)
+      : solid_(solid), r_(solid.radius) {
     std::vector<Vec3d> ends;
-    for (const CreasePipe& pipe : solid.shape.pipes) {
+    for (const CreasePipe& pipe : shape.pipes) {
       if (!folds(pipe)) continue;
       stretches_.push_back({&pipe, pipe.curve.u0, pipe.curve.u1});
       ends.push_back(pipe.curve.at(pipe.curve.u0));
       ends.push_back(pipe.curve.at(pipe.curve.u1));
     }
     // Grooves go on over what lies beside.
-    for (const CreasePipe& pipe : solid.shape.pipes) add_beside(pipe, ends);
+    for (const CreasePipe& pipe : shape.pipes) add_beside(pipe, ends);
   }
 
   std::vector<CreaseGroove> find() {
-    for (const Stretch& stretch : stretches_) {
-      pipe_ = stretch.pipe;
-      add_borders(stretch);
-    }
+    const auto found = parallel_collect<Found>(
+        stretches_.size(), kStretchesAtOnce,
+        [&](std::size_t i, auto& list) { add_borders(stretches_[i], list); });
+    for (const Found& f : found) (f.is_first ? out_ : second_).push_back(f.groove);
     add_second();
     return std::move(out_);
   }
@@ -58,6 +62,10 @@ class GrooveFinder {
   struct Stretch {
     const CreasePipe* pipe;
     double u0, u1;
+  };
+  struct Found {
+    CreaseGroove groove;
+    bool is_first;  // from the side that counts
   };
   struct Border {
     Vec3d point, normal, other;  // the normals of the two sides
@@ -70,10 +78,12 @@ class GrooveFinder {
     if (!(sine > 1e-9)) return a;
     return a * (std::sin((1 - p.v) * angle) / sine) + b * (std::sin(p.v * angle) / sine);
   }
-  [[nodiscard]] Vec3d point_at(PipePlace p) const {
-    return pipe_->curve.at(p.u) + normal_at(*pipe_, p) * r_;
+  [[nodiscard]] Vec3d point_at(const CreasePipe& pipe, PipePlace p) const {
+    return pipe.curve.at(p.u) + normal_at(pipe, p) * r_;
   }
-  [[nodiscard]] bool is_covered(PipePlace p) const { return is_within_balls(solid_, point_at(p)); }
+  [[nodiscard]] bool is_covered(const CreasePipe& pipe, PipePlace p) const {
+    return solid_.is_beneath(point_at(pipe, p));
+  }
 
   [[nodiscard]] bool folds(const CreasePipe& pipe) const {
     if (pipe.curve.is_line) return false;
@@ -107,7 +117,8 @@ class GrooveFinder {
   }
 
   // Marching squares.
-  void add_borders(const Stretch& stretch) {
+  void add_borders(const Stretch& stretch, std::vector<Found>& found) const {
+    const CreasePipe& pipe = *stretch.pipe;
     const std::vector<double> us = places_along(stretch);
     const auto place = [&](std::size_t i, int k) {
       // Grooves run into concave edges at a small angle.
@@ -116,12 +127,12 @@ class GrooveFinder {
     std::vector<bool> before, now;
     for (std::size_t i = 0; i < us.size(); ++i) {
       now.clear();
-      for (int k = 0; k <= kAcross; ++k) now.push_back(is_covered(place(i, k)));
+      for (int k = 0; k <= kAcross; ++k) now.push_back(is_covered(pipe, place(i, k)));
       for (int k = 0; i > 0 && k < kAcross; ++k) {
         const std::array<PipePlace, 4> corners{place(i - 1, k), place(i, k), place(i, k + 1),
                                                place(i - 1, k + 1)};
         const auto at = std::size_t(k);
-        add_cell(corners, {before[at], now[at], now[at + 1], before[at + 1]});
+        add_cell(pipe, corners, {before[at], now[at], now[at + 1], before[at + 1]}, found);
       }
       before = now;
     }
@@ -143,23 +154,27 @@ class GrooveFinder {
     return us;
   }
 
-  void add_cell(const std::array<PipePlace, 4>& corners, const std::array<bool, 4>& covered) {
+  void add_cell(const CreasePipe& pipe, const std::array<PipePlace, 4>& corners,
+                const std::array<bool, 4>& covered, std::vector<Found>& found) const {
     std::vector<Border> crossings;
     for (std::size_t i = 0; i < 4; ++i) {
       const std::size_t j = (i + 1) % 4;
       if (covered[i] == covered[j]) continue;
-      crossings.push_back(covered[i] ? find_border(corners[j], corners[i])
-                                     : find_border(corners[i], corners[j]));
+      crossings.push_back(covered[i] ? find_border(pipe, corners[j], corners[i])
+                                     : find_border(pipe, corners[i], corners[j]));
     }
-    for (std::size_t i = 0; i + 1 < crossings.size(); i += 2) add(crossings[i], crossings[i + 1]);
+    for (std::size_t i = 0; i + 1 < crossings.size(); i += 2) {
+      add(crossings[i], crossings[i + 1], found);
+    }
   }
 
-  [[nodiscard]] Border find_border(PipePlace bare, PipePlace covered) const {
+  [[nodiscard]] Border find_border(const CreasePipe& pipe, PipePlace bare,
+                                   PipePlace covered) const {
     for (int i = 0; i < 20; ++i) {
       const PipePlace middle{0.5 * (bare.u + covered.u), 0.5 * (bare.v + covered.v)};
-      (is_covered(middle) ? covered : bare) = middle;
+      (is_covered(pipe, middle) ? covered : bare) = middle;
     }
-    const Vec3d x = point_at(covered);
+    const Vec3d x = point_at(pipe, covered);
     double least = std::numeric_limits<double>::infinity();
     Vec3d other;
     solid_.pipes.for_each_near(x, x, [&](const CreaseCurve& part) {
@@ -168,16 +183,16 @@ class GrooveFinder {
       least = length(x - c);
       other = c;
     });
-    return {point_at(bare), normal_at(*pipe_, bare), normalize(x - other), pipe_->curve.at(bare.u),
-            other};
+    return {point_at(pipe, bare), normal_at(pipe, bare), normalize(x - other),
+            pipe.curve.at(bare.u), other};
   }
 
-  void add(const Border& p, const Border& q) {
+  static void add(const Border& p, const Border& q, std::vector<Found>& found) {
     if (dot(p.normal, p.other) > kSmooth && dot(q.normal, q.other) > kSmooth) return;
     // Both sides may find the groove, and one of them counts.
     const Vec3d odd{0.5417, 0.6213, 0.5663};
     const bool is_first = dot(odd, p.center) < dot(odd, p.other_center);
-    (is_first ? out_ : second_).push_back({p.point, q.point, p.normal, p.other});
+    found.push_back({{p.point, q.point, p.normal, p.other}, is_first});
   }
 
   // What was found from the second side alone.
@@ -204,14 +219,13 @@ class GrooveFinder {
   const CreasedSolid& solid_;
   double r_;
   std::vector<Stretch> stretches_;
-  const CreasePipe* pipe_ = nullptr;
   std::vector<CreaseGroove> out_, second_;
 };
 
 }  // namespace
 
-std::vector<CreaseGroove> find_grooves(const CreasedSolid& solid) {
-  return GrooveFinder(solid).find();
+std::vector<CreaseGroove> find_grooves(const CreasedSolid& solid, const CreaseShape& shape) {
+  return GrooveFinder(solid, shape).find();
 }
 
 }  // namespace arris

@@ -40,6 +40,7 @@ NetworkBuilder::NetworkBuilder(const WeldedMesh& mesh, const FlatRegions& region
 ShellNetwork NetworkBuilder::build(std::uint32_t shell, bool convex) {
   std::uint64_t shortened = 0;
   std::uint64_t narrow = 0;
+  std::vector<std::uint32_t> left;
   std::optional<Clearance> clearance;
   if (!convex) clearance.emplace(mesh_, regions_, shell, radius_);
   for (int round = 0;; ++round) {
@@ -49,16 +50,17 @@ ShellNetwork NetworkBuilder::build(std::uint32_t shell, bool convex) {
     if (!refused.any()) {
       network.shortened_edges = shortened;
       network.narrow_edges = narrow;
+      network.left_sharp = std::move(left);
       return network;
     }
     // Leave those edges sharp and look at their corners again.
     shortened += refused.shortened.size() + refused.no_longer_skipped;
     narrow += refused.narrow.size();
-    for (const std::uint32_t first : refused.shortened) leave_sharp(first);
-    for (const std::uint32_t first : refused.narrow) leave_sharp(first);
+    for (const std::uint32_t first : refused.shortened) leave_sharp(first, left);
+    for (const std::uint32_t first : refused.narrow) leave_sharp(first, left);
     if (round == kMaxRounds) {
       narrow += network.rounded_edges - refused.shortened.size() - refused.narrow.size();
-      leave_all_sharp(shell);
+      leave_all_sharp(shell, left);
     }
     forget_ends(shell);
   }
@@ -75,17 +77,20 @@ std::vector<std::uint32_t> NetworkBuilder::pieces_of(std::uint32_t first) const 
   }
 }
 
-void NetworkBuilder::leave_sharp(std::uint32_t first) {
+void NetworkBuilder::leave_sharp(std::uint32_t first, std::vector<std::uint32_t>& left) {
   for (const std::uint32_t h : pieces_of(first)) {
+    left.push_back(h);
     kinds_[h] = kinds_[mesh_.twin[h]] = EdgeKind::smooth;
   }
 }
 
-void NetworkBuilder::leave_all_sharp(std::uint32_t shell) {
+void NetworkBuilder::leave_all_sharp(std::uint32_t shell, std::vector<std::uint32_t>& left) {
   for (std::uint32_t i = 0; i < mesh_.shells[shell].triangle_count; ++i) {
     const std::uint32_t t = mesh_.triangles_by_shell[mesh_.shells[shell].first_triangle + i];
     for (std::uint32_t h = 3 * t; h < 3 * t + 3; ++h) {
-      if (kinds_[h] == EdgeKind::convex) kinds_[h] = EdgeKind::smooth;
+      if (kinds_[h] != EdgeKind::convex) continue;
+      kinds_[h] = EdgeKind::smooth;
+      if (h < mesh_.twin[h]) left.push_back(h);
     }
   }
 }

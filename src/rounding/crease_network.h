@@ -55,7 +55,8 @@ struct ShellNetwork {
   std::uint64_t rounded_corners = 0;  // mesh corners that got spheres
   std::uint64_t shortened_edges = 0;  // left sharp: the radius needs more length than they have
   std::uint64_t narrow_edges = 0;  // left sharp: what would be taken away isn't free (clearance.h)
-  bool inverted = false;           // some arc has vanished or turned over
+  std::vector<std::uint32_t> left_sharp;  // half-edges of the mesh of all these
+  bool inverted = false;                  // some arc has vanished or turned over
   // The largest radius at which no arc has vanished yet, from the lengths of the arcs.
   double radius_limit = std::numeric_limits<double>::infinity();
 };
@@ -116,8 +117,8 @@ class NetworkBuilder {
   };
 
   ShellNetwork build_once(std::uint32_t shell, bool convex, Refused& refused);
-  void leave_sharp(std::uint32_t first);
-  void leave_all_sharp(std::uint32_t shell);
+  void leave_sharp(std::uint32_t first, std::vector<std::uint32_t>& left);
+  void leave_all_sharp(std::uint32_t shell, std::vector<std::uint32_t>& left);
   void forget_ends(std::uint32_t shell);
   void check_cuts(Clearance& clearance, Refused& refused);
   void leave_without_spheres(const Cut& corner, Refused& refused);

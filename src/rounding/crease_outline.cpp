@@ -9,10 +9,6 @@
 namespace arris {
 namespace {
 
-// A point is beneath the surface if it is deeper within a ball than this part of the radius, and than so many
-// tolerances: creases may end by one or two too late.
-constexpr double kBeneath = 1e-5;
-constexpr double kTolerances = 8;
 // Of the radius: a point this near to the sharp surface is on it.
 constexpr double kOnSurface = 1e-4;
 // Rays almost along an edge would stay in its void for ever: they are followed for as many radii.
@@ -36,39 +32,13 @@ struct Touch {
   [[nodiscard]] bool is_on() const { return exists && side == 0; }
 };
 
-// The distance from a crease below which a point is beneath the surface.
-double least_distance(const CreasedSolid& solid) {
-  return solid.radius - std::max(kBeneath * solid.radius, kTolerances * solid.tolerance);
-}
-
-// To a segment, or a short part of an arc: Newton's method from the angle about its centre.
-double distance_to(const CreaseCurve& part, Vec3d x) {
-  if (part.is_line) return length(x - part.at(nearest_parameter(part, x)));
-  const Vec3d offset = x - part.center;
-  const double p = dot(offset, part.a), q = dot(offset, part.b);
-  const double aa = length_squared(part.a), bb = length_squared(part.b);
-  const double middle = 0.5 * (part.u0 + part.u1);
-  double u = std::atan2(q / bb, p / aa);
-  u = std::clamp(u + 2 * kPi * std::round((middle - u) / (2 * kPi)), part.u0, part.u1);
-  for (int i = 0; i < 3; ++i) {
-    const double c = std::cos(u), s = std::sin(u);
-    const double slope = (bb - aa) * s * c + p * s - q * c;
-    const double bend = (bb - aa) * (c * c - s * s) + p * c + q * s;
-    if (!(bend > 0)) break;
-    const double before = u;
-    u = std::clamp(u - slope / bend, part.u0, part.u1);
-    if (std::abs(u - before) < 1e-7) break;
-  }
-  return length(x - part.at(u));
-}
-
 class OutlineFinder {
  public:
   OutlineFinder(const CreasedSolid& solid, Vec3d eye, VoidDepths depths)
       : solid_(solid), r_(solid.radius), eye_(eye), depths_(depths) {}
 
   std::vector<CreaseLine> outline() {
-    for (const CreasePipe& pipe : solid_.shape.pipes) {
+    for (const CreasePipe& pipe : solid_.shape().pipes) {
       axis_ = pipe.curve.is_line ? normalize(pipe.curve.a) : Vec3d();
       for (const double side : {-1.0, 1.0}) {
         const auto touch = [&](double u) { return touch_pipe(pipe, u, side); };
@@ -76,13 +46,13 @@ class OutlineFinder {
       }
     }
     axis_ = {};
-    for (const CreaseBall& ball : solid_.shape.balls) add_ball(ball);
+    for (const CreaseBall& ball : solid_.shape().balls) add_ball(ball);
     return std::move(out_);
   }
 
   std::vector<CreaseLine> middles() {
     depths_ = VoidDepths::none;
-    for (const CreasePipe& pipe : solid_.shape.pipes) {
+    for (const CreasePipe& pipe : solid_.shape().pipes) {
       const auto touch = [&](double u) { return touch_middle(pipe, u); };
       pipe.curve.is_line ? add_line(pipe, touch) : add_arc(pipe, touch);
       for (const bool last : {false, true}) add_middle_of_ball(pipe, last, touch);
@@ -139,14 +109,14 @@ class OutlineFinder {
   void add_middle_of_ball(const CreasePipe& pipe, bool last, const TouchAt& touch) {
     const std::uint32_t index = pipe.balls[last ? 1 : 0];
     if (index == kNone) return;
-    const CreaseBall& ball = solid_.shape.balls[index];
+    const CreaseBall& ball = solid_.shape().balls[index];
     if (ball.sides.empty() || dot(ball.middle, eye_ - ball.center) <= r_) return;
     const Touch from = touch(last ? pipe.curve.u1 : pipe.curve.u0);
     if (!from.exists) return;
     Touch to = from;
     to.c = ball.center;
     to.n = ball.middle;
-    if (!is_within_balls(solid_, place(to))) emit(from, to);
+    if (!solid_.is_beneath(place(to))) emit(from, to);
   }
 
   // On a segment the directions are the same everywhere. It is cut where it passes into other balls.
@@ -162,7 +132,7 @@ class OutlineFinder {
         t.c = first.c + (last.c - first.c) * part;
         return t;
       };
-      if (is_within_balls(solid_, place(at(0.5 * (cuts[i - 1] + cuts[i]))))) continue;
+      if (solid_.is_beneath(place(at(0.5 * (cuts[i - 1] + cuts[i]))))) continue;
       emit(at(cuts[i - 1]), at(cuts[i]));
     }
   }
@@ -170,7 +140,7 @@ class OutlineFinder {
   // Fractions of a segment of the surface at which it may begin or cease to be within balls.
   [[nodiscard]] std::vector<double> cuts_of(Vec3d p, Vec3d q) const {
     std::vector<double> cuts{0, 1};
-    const double least = least_distance(solid_), extent = length(q - p);
+    const double least = solid_.least_distance(), extent = length(q - p);
     solid_.pipes.for_each_along(p, q - p, 1, [&](const CreaseCurve& other) {
       const auto distance = [&](double part) { return distance_to(other, p + (q - p) * part); };
       // Distances change by no more than the way along the segment.
@@ -211,7 +181,7 @@ class OutlineFinder {
   void follow(double u0, double u1, int steps, const TouchAt& touch_at) {
     const auto touch = [&](double u) {
       Touch t = touch_at(u);
-      if (t.is_on() && is_within_balls(solid_, place(t))) t.side = kHidden;
+      if (t.is_on() && solid_.is_beneath(place(t))) t.side = kHidden;
       return t;
     };
     Touch before = touch(u0);
@@ -337,29 +307,6 @@ class OutlineFinder {
 };
 
 }  // namespace
-
-// The nearest ball's centre is on a crease, or on the way from the nearest place of the surface through x: two balls
-// one of which holds the other touch there.
-bool is_within_balls(const CreasedSolid& solid, Vec3d x) {
-  const double r = solid.radius, least = least_distance(solid);
-  bool within = false;
-  solid.pipes.for_each_near(
-      x, x, [&](const CreaseCurve& part) { within = within || distance_to(part, x) < least; });
-  if (within) return true;
-  double nearest = r;
-  Vec3d foot;
-  solid.surface.for_each_near(x - Vec3d(r), x + Vec3d(r), [&](const SurfaceTriangle& t) {
-    const Vec3d y = nearest_on_triangle(x, t);
-    const double distance = length(x - y);
-    if (distance >= nearest) return;
-    nearest = distance;
-    foot = y;
-  });
-  if (nearest >= r) return true;
-  if (nearest < kOnSurface * r) return false;
-  const Vec3d center = foot + (x - foot) * (r / nearest);
-  return !solid.surface.is_near(center, r - solid.tolerance, kNone);
-}
 
 std::vector<CreaseLine> find_crease_outline(const CreasedSolid& solid, Vec3d eye,
                                             VoidDepths depths) {

@@ -49,7 +49,4 @@ struct KeptEdge {
 std::vector<std::pair<double, double>> find_kept_parts(const CreasedSolid& solid,
                                                        const KeptEdge& edge);
 
-// Whether a point of the solid lies within balls about others, and so beneath the rounded surface.
-bool is_within_balls(const CreasedSolid& solid, Vec3d x);
-
 }  // namespace arris

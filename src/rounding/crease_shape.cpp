@@ -6,8 +6,13 @@
 #include <optional>
 #include <utility>
 
+#include "base/parallel_collect.h"
+
 namespace arris {
 namespace {
+
+// Curves that one thread looks at at a time.
+constexpr std::size_t kCurvesAtOnce = 32;
 
 // Of the radius: ends of creases this near to each other are one. They come from different pairs of features.
 constexpr double kSameEnd = 1e-3;
@@ -217,24 +222,16 @@ CreaseWedge CreasePipe::wedge_at(double u) const {
   return {blend(wedges[i].a, wedges[i + 1].a), blend(wedges[i].b, wedges[i + 1].b)};
 }
 
-std::size_t CreaseShape::bytes() const {
-  std::size_t sum = pipes.size() * sizeof(CreasePipe) + balls.size() * sizeof(CreaseBall) +
-                    grooves.size() * sizeof(CreaseGroove);
-  for (const CreasePipe& pipe : pipes) sum += pipe.wedges.size() * sizeof(CreaseWedge);
-  for (const CreaseBall& ball : balls) {
-    sum += (ball.contacts.size() + ball.sides.size()) * sizeof(Vec3d);
-  }
-  return sum;
-}
-
 CreaseShape make_crease_shape(const SolidSurface& surface, std::span<const CreaseCurve> creases,
                               double radius, double tolerance) {
   const ContactFinder finder(surface, radius, tolerance);
   CreaseShape shape;
-  for (const CreaseCurve& curve : without_doubles(join_pieces(creases), radius)) {
-    CreasePipe pipe = make_pipe(curve, radius, finder);
-    if (!pipe.wedges.empty()) shape.pipes.push_back(std::move(pipe));
-  }
+  const std::vector<CreaseCurve> curves = without_doubles(join_pieces(creases), radius);
+  shape.pipes =
+      parallel_collect<CreasePipe>(curves.size(), kCurvesAtOnce, [&](std::size_t i, auto& list) {
+        CreasePipe pipe = make_pipe(curves[i], radius, finder);
+        if (!pipe.wedges.empty()) list.push_back(std::move(pipe));
+      });
   shape.balls = make_balls(shape.pipes, radius, finder);
   return shape;
 }

@@ -8,7 +8,6 @@
 #pragma once
 
 #include <array>
-#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -54,8 +53,6 @@ struct CreaseShape {
   std::vector<CreasePipe> pipes;
   std::vector<CreaseBall> balls;
   std::vector<CreaseGroove> grooves;
-
-  [[nodiscard]] std::size_t bytes() const;
 };
 
 // All but the grooves (crease_grooves.h). tolerance: crease_tolerance()

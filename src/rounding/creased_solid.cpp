@@ -3,6 +3,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
+
+#include "base/parallel_for.h"
+#include "rounding/crease_grooves.h"
 
 namespace arris {
 namespace {
@@ -17,6 +21,14 @@ constexpr double kInside = 0.5;
 constexpr double kLeastTurn = 0.03;
 // How far beside the plane of two faces' normals that of a place between them may lie: facets end at pipes' ends.
 constexpr double kBeside = 0.05;
+// A point is beneath the surface if it is deeper within a ball than this part of the radius, and than so many
+// tolerances: creases may end by one or two too late.
+constexpr double kBeneath = 1e-5;
+constexpr double kTolerances = 8;
+// Of the radius: a point this near to the sharp surface is on it.
+constexpr double kOnSurface = 1e-4;
+// Of a way that should lie in a void: where it is looked at.
+constexpr std::array kPlacesOnWay{0.08, 0.25, 0.42, 0.58, 0.75, 0.92};
 // More functions than these cost more than asking the surface.
 constexpr std::size_t kMostDepths = 8;
 
@@ -98,6 +110,54 @@ bool CreasedSolid::is_kept(Vec3d x, Vec3d normal, std::uint32_t region) const {
 VoidCrossing CreasedSolid::cross_void(Vec3d x, Vec3d direction) const {
   const SolidSurface::Exit exit = surface.first_exit(x, direction, tolerance / length(direction));
   return {pipes.first_entry(x, direction, exit.t), exit};
+}
+
+const CreaseShape& CreasedSolid::shape() const {
+  std::call_once(shape_->once, [&] {
+    run_isolated([&] {
+      CreaseShape made = make_crease_shape(surface, pipes.creases(), radius, tolerance);
+      made.grooves = find_grooves(*this, made);
+      shape_->shape = std::move(made);
+    });
+  });
+  return shape_->shape;
+}
+
+double CreasedSolid::least_distance() const {
+  return radius - std::max(kBeneath * radius, kTolerances * tolerance);
+}
+
+// The nearest ball's centre is on a crease, or on the way from the nearest place of the surface through x: two balls
+// one of which holds the other touch there.
+bool CreasedSolid::is_beneath(Vec3d x) const {
+  bool within = false;
+  const double least = least_distance();
+  pipes.for_each_near(
+      x, x, [&](const CreaseCurve& part) { within = within || distance_to(part, x) < least; });
+  if (within) return true;
+  double nearest = radius;
+  Vec3d foot;
+  std::uint32_t region = kNone;
+  surface.for_each_near(x - Vec3d(radius), x + Vec3d(radius), [&](const SurfaceTriangle& t) {
+    const Vec3d y = nearest_on_triangle(x, t);
+    const double distance = length(x - y);
+    if (distance >= nearest) return;
+    nearest = distance;
+    foot = y;
+    region = t.region;
+  });
+  if (nearest >= radius) return true;
+  if (nearest < kOnSurface * radius) return false;
+  const Vec3d center = foot + (x - foot) * (radius / nearest);
+  return !surface.is_near(center, radius - tolerance, region);
+}
+
+bool CreasedSolid::is_through_material(Vec3d x, std::uint32_t region, Vec3d direction, double end,
+                                       std::uint32_t end_region) const {
+  const auto is_loose = [&](std::uint32_t r) { return std::ranges::binary_search(loose, r); };
+  if (!is_loose(region) && !is_loose(end_region)) return false;
+  return std::ranges::any_of(kPlacesOnWay,
+                             [&](double part) { return is_beneath(x + direction * (part * end)); });
 }
 
 std::optional<EdgeBlend> CreasedSolid::blend_at(Vec3d x, Vec3d normal) const {

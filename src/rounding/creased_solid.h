@@ -7,6 +7,8 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
+#include <mutex>
 #include <optional>
 #include <vector>
 
@@ -30,18 +32,33 @@ struct CreasedSolid {
   CreasePipes pipes;
   double radius = 0;
   double tolerance = 0;  // crease_tolerance()
-  CreaseShape shape;
+  std::vector<std::uint32_t>
+      loose;  // regions with edges that stay sharp though they should not; sorted
 
+  // Which part of the balls is surface, for outlines: made on all cores when it is first asked for.
+  [[nodiscard]] const CreaseShape& shape() const;
   // Whether a point of a face, whose normal is given, is on the rounded solid.
   [[nodiscard]] bool is_kept(Vec3d x, Vec3d normal, std::uint32_t region) const;
   // From a point of the void, or of the sharp surface above it, on along a ray within the sharp solid.
   [[nodiscard]] VoidCrossing cross_void(Vec3d x, Vec3d direction) const;
+  // The distance from a crease below which a point is beneath the rounded surface.
+  [[nodiscard]] double least_distance() const;
+  // Whether a point of the solid lies beneath the rounded surface, by more than what rays are computed to.
+  [[nodiscard]] bool is_beneath(Vec3d x) const;
+  // Where edges stay sharp nothing ends their neighbours' voids: whether a way from x on a face, up to a place on
+  // another one or a pipe, is no way through the void.
+  [[nodiscard]] bool is_through_material(Vec3d x, std::uint32_t region, Vec3d direction, double end,
+                                         std::uint32_t end_region) const;
   // Of a place on a pipe of a curved solid, with its normal: the two faces that the ball there touches and between
   // which the normal lies. Nothing: there are no such two. Points are relative to the centre, triangles the mesh's.
   [[nodiscard]] std::optional<EdgeBlend> blend_at(Vec3d x, Vec3d normal) const;
-  [[nodiscard]] std::size_t bytes() const {
-    return surface.bytes() + pipes.bytes() + shape.bytes();
-  }
+  [[nodiscard]] std::size_t bytes() const { return surface.bytes() + pipes.bytes(); }
+
+  struct MadeShape {
+    std::once_flag once;
+    CreaseShape shape;
+  };
+  std::unique_ptr<MadeShape> shape_ = std::make_unique<MadeShape>();
 };
 
 // A linear function of the places of a triangle, by its corners, that is positive wherever the rounding has taken it

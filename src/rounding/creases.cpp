@@ -75,13 +75,14 @@ class CreaseFinder {
     collect_corners();
   }
 
-  std::optional<std::vector<CreaseCurve>> run() {
+  FoundCreases run() {
     std::vector<TrianglePair> pairs = crossing_pairs();
     const auto within = std::stable_partition(
         pairs.begin(), pairs.end(),
         [&](const TrianglePair& p) { return !are_joined(p.faces.first, p.faces.second); });
-    std::vector<CreaseCurve> out = face_face_creases({pairs.begin(), within});
-    if (!have_creases(out)) return std::nullopt;
+    FoundCreases found{face_face_creases({pairs.begin(), within}), {}};
+    std::vector<CreaseCurve>& out = found.curves;
+    found.missing = pairs_without(out);
     collect_ended(out);
     pairs.erase(pairs.begin(), within);
     std::erase_if(pairs, [&](const TrianglePair& p) {
@@ -99,7 +100,7 @@ class CreaseFinder {
                                            add_edge_edges(corners_[i], list);
                                            add_face_corners(corners_[i], list);
                                          }));
-    return out;
+    return found;
   }
 
  private:
@@ -211,10 +212,11 @@ class CreaseFinder {
     });
   }
 
-  // Whether each convex edge has one, but for pieces of curved rims that are short enough to be rounded by their
+  // Faces whose convex edges have none, but for pieces of curved rims that are short enough to be rounded by their
   // neighbours.
   // creases: sorted by faces.
-  [[nodiscard]] bool have_creases(const std::vector<CreaseCurve>& creases) const {
+  [[nodiscard]] std::vector<FacePair> pairs_without(const std::vector<CreaseCurve>& creases) const {
+    std::vector<FacePair> pairs;
     const double most = in_.surface.is_curved() ? std::min(r_, kShortPiece * in_.size) : 0;
     auto at = creases.begin();
     double missing = 0;
@@ -224,9 +226,9 @@ class CreaseFinder {
       while (at != creases.end() && FacePair(at->face_a, at->face_b) < faces) ++at;
       if (at != creases.end() && FacePair(at->face_a, at->face_b) == faces) continue;
       missing += convex_[i].second;
-      if (missing > most) return false;
+      if (missing > most && (pairs.empty() || pairs.back() != faces)) pairs.push_back(faces);
     }
-    return true;
+    return pairs;
   }
 
   [[nodiscard]] CreaseCutter make_cutter() const { return {in_.surface, r_, tolerance_}; }
@@ -509,7 +511,7 @@ class CreaseFinder {
 
 }  // namespace
 
-std::optional<std::vector<CreaseCurve>> find_creases(const CreaseInput& input) {
+FoundCreases find_creases(const CreaseInput& input) {
   return CreaseFinder(input).run();
 }
 

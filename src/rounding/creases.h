@@ -14,7 +14,6 @@
 #pragma once
 
 #include <cstdint>
-#include <optional>
 #include <span>
 #include <vector>
 
@@ -42,9 +41,15 @@ struct CreaseInput {
   double radius = 0;
 };
 
-// Nothing: a convex edge has no crease, and is no short piece of a curved rim. The radius is too large for what lies
-// beside it, or more is taken away than edges. Convex edges are sharp ones; smooth edges that bend in are concave ones
-// all the same, and creases within one curved surface (SolidSurface::is_joined) are made at faces that have others.
-std::optional<std::vector<CreaseCurve>> find_creases(const CreaseInput& input);
+struct FoundCreases {
+  std::vector<CreaseCurve> curves;
+  // Sorted: faces between which convex edges have none, and are no short pieces of a curved rim. The radius is too
+  // large for what lies beside them.
+  std::vector<FacePair> missing;
+};
+
+// Convex edges are sharp ones; smooth edges that bend in are concave ones all the same, and creases within one curved
+// surface (SolidSurface::is_joined) are made at faces that have others.
+FoundCreases find_creases(const CreaseInput& input);
 
 }  // namespace arris

@@ -5,7 +5,6 @@
 #include <utility>
 
 #include "base/parallel_collect.h"
-#include "rounding/crease_grooves.h"
 #include "rounding/creases.h"
 #include "rounding/smooth_reach.h"
 
@@ -54,20 +53,30 @@ class CreasedMaker {
     if (has_smooth_edges_ && in_.is_outside) return std::nullopt;
     SolidSurface surface = make_surface();
     if (has_smooth_edges_ && is_too_fine(surface)) return std::nullopt;
-    join_smooth_faces(surface);
-    std::optional<std::vector<CreaseCurve>> creases = find_creases(
+    const std::vector<FacePair> sharp = join_smooth_faces(surface);
+    FoundCreases found = find_creases(
         {in_.welded, in_.regions, in_.kinds, shells_, surface, center_, outer_.size(), in_.radius});
-    if (!creases || !covers(surface, *creases)) return std::nullopt;
+    std::vector<CreaseCurve>& creases = found.curves;
+    if (creases.empty()) return std::nullopt;
+    // Fillets are all or none: the space outside has no faces to keep beside them.
+    if (in_.is_outside && !found.missing.empty()) return std::nullopt;
+    std::vector<FacePair> thin;
+    if (!in_.is_outside) thin = find_thin_walls({surface, {}, sharp, in_.regions, in_.radius});
+    // Edges that stay sharp end thin walls, too.
+    for (const auto& [a, b] : found.missing) thin.insert(thin.end(), {{a, b}, {b, a}});
+    surface.set_thin(thin);
+    if (!keep_faces(surface, creases, thin)) return std::nullopt;
+    std::vector<std::uint32_t> loose;
+    for (const FacePair& pair : thin) loose.push_back(pair.first);
+    loose.erase(std::unique(loose.begin(), loose.end()), loose.end());
+    surface.set_thin(std::move(thin));
     std::vector<TriangleBand> bands = parallel_collect<TriangleBand>(
         triangles_.size(), kTrianglesAtOnce,
         [&](std::size_t i, auto& list) { append_bands(surface, triangles_[i], list); });
     const double tolerance = crease_tolerance(outer_.size(), in_.radius);
-    CreaseShape shape;
-    if (!in_.is_outside) shape = make_crease_shape(surface, *creases, in_.radius, tolerance);
-    CreasedSolid solid{std::move(surface), CreasePipes(std::move(*creases), in_.radius), in_.radius,
-                       tolerance, std::move(shape)};
-    if (!in_.is_outside) solid.shape.grooves = find_grooves(solid);
-    return MadeCreased{std::move(solid), std::move(bands)};
+    CreasedSolid solid{std::move(surface), CreasePipes(std::move(creases), in_.radius), in_.radius,
+                       tolerance, std::move(loose)};
+    return MadeCreased{std::move(solid), std::move(bands), edges_between(found.missing)};
   }
 
  private:
@@ -85,20 +94,40 @@ class CreasedMaker {
     return {std::move(triangles), in_.radius};
   }
 
-  void join_smooth_faces(SolidSurface& surface) const {
-    if (!has_smooth_edges_) return;
+  // Comes out: faces that meet in convex edges, each pair in both orders; sorted.
+  std::vector<FacePair> join_smooth_faces(SolidSurface& surface) const {
     std::vector<FacePair> smooth, sharp;
-    for (const std::uint32_t t : triangles_) {
-      for (std::uint32_t h = 3 * t; h < 3 * t + 3; ++h) {
-        const FacePair faces(in_.regions.region[t], in_.regions.region[in_.welded.twin[h] / 3]);
-        if (in_.kinds[h] == EdgeKind::smooth) smooth.push_back(faces);
-        if (in_.kinds[h] == EdgeKind::convex) sharp.push_back(faces);
-      }
-    }
+    for_edges([&](std::uint32_t h, FacePair faces) {
+      if (in_.kinds[h] == EdgeKind::smooth) smooth.push_back(faces);
+      if (in_.kinds[h] == EdgeKind::convex) sharp.push_back(faces);
+    });
     std::ranges::sort(smooth);
     std::ranges::sort(sharp);
     smooth.erase(std::unique(smooth.begin(), smooth.end()), smooth.end());
-    surface.set_joined(find_smooth_reach({surface, smooth, sharp, in_.regions, in_.radius}));
+    if (!smooth.empty()) {
+      surface.set_joined(find_smooth_reach({surface, smooth, sharp, in_.regions, in_.radius}));
+    }
+    return sharp;
+  }
+
+  template <class Visit>
+  void for_edges(const Visit& visit) const {
+    for (const std::uint32_t t : triangles_) {
+      for (std::uint32_t h = 3 * t; h < 3 * t + 3; ++h) {
+        visit(h, FacePair(in_.regions.region[t], in_.regions.region[in_.welded.twin[h] / 3]));
+      }
+    }
+  }
+
+  [[nodiscard]] std::vector<std::uint32_t> edges_between(std::span<const FacePair> pairs) const {
+    std::vector<std::uint32_t> edges;
+    if (pairs.empty()) return edges;
+    for_edges([&](std::uint32_t h, FacePair faces) {
+      if (in_.kinds[h] != EdgeKind::convex || h > in_.welded.twin[h]) return;
+      if (std::ranges::binary_search(pairs, FacePair(std::minmax(faces.first, faces.second))))
+        edges.push_back(h);
+    });
+    return edges;
   }
 
   // Facets by far smaller than the radius cost the square of their number.
@@ -115,10 +144,10 @@ class CreasedMaker {
     return near / sampled * triangles.size() > kMostPairs;
   }
 
-  // Whether each face is kept somewhere, or has a crease, or one near: none vanishes that walls too near have taken
-  // away.
-  [[nodiscard]] bool covers(const SolidSurface& surface,
-                            std::span<const CreaseCurve> creases) const {
+  // No face vanishes that walls too near have taken away: each is kept somewhere, or has a crease, or one near. What is
+  // too near to another counts as the far side of a thin wall. False: the space outside would need it.
+  [[nodiscard]] bool keep_faces(const SolidSurface& surface, std::span<const CreaseCurve> creases,
+                                std::vector<FacePair>& thin) const {
     std::vector<std::uint32_t> rounded;
     for (const CreaseCurve& c : creases) rounded.insert(rounded.end(), {c.face_a, c.face_b});
     std::ranges::sort(rounded);
@@ -132,13 +161,23 @@ class CreasedMaker {
       return found;
     };
     const double least = in_.radius - crease_tolerance(outer_.size(), in_.radius);
-    return std::ranges::all_of(surface.triangles(), [&](const SurfaceTriangle& t) {
-      if (std::ranges::binary_search(rounded, t.region)) return true;
+    const std::size_t before = thin.size();
+    for (const SurfaceTriangle& t : surface.triangles()) {
+      if (std::ranges::binary_search(rounded, t.region)) continue;
       const Vec3d middle = (t.p0 + t.p1 + t.p2) / 3.0;
-      const Vec3d normal = in_.regions.planes[t.region].normal;
-      return !surface.is_near(middle - normal * in_.radius, least, t.region) ||
-             is_at_crease(middle);
-    });
+      const Vec3d c = middle - in_.regions.planes[t.region].normal * in_.radius;
+      if (!surface.is_near(c, least, t.region) || is_at_crease(middle)) continue;
+      surface.for_each_near(c - Vec3d(least), c + Vec3d(least), [&](const SurfaceTriangle& other) {
+        if (other.region == t.region || surface.is_joined(t.region, other.region)) return;
+        if (length(c - nearest_on_triangle(c, other)) >= least) return;
+        thin.emplace_back(t.region, other.region);
+        thin.emplace_back(other.region, t.region);
+      });
+    }
+    if (thin.size() > before && in_.is_outside) return false;
+    std::ranges::sort(thin);
+    thin.erase(std::unique(thin.begin(), thin.end()), thin.end());
+    return true;
   }
 
   [[nodiscard]] BoxTree tree_of(std::span<const CreaseCurve> creases) const {

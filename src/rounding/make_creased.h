@@ -29,10 +29,12 @@ struct CreasedInput {
 struct MadeCreased {
   CreasedSolid solid;
   std::vector<TriangleBand> bands;
+  // Half-edges, one of each pair, whose edges stay sharp: the radius has no room beside them.
+  std::vector<std::uint32_t> left_sharp;
 };
 
-// shells: the outside of one solid, then its hollows. Nothing: something about them is open, the radius takes away a
-// whole edge or face, or facets of a curved surface are too fine for it.
+// shells: the outside of one solid, then its hollows. Nothing: something about them is open, no edge has room, or facets
+// of a curved surface are too fine for the radius.
 std::optional<MadeCreased> make_creased_solid(const CreasedInput& input,
                                               std::span<const std::uint32_t> shells);
 

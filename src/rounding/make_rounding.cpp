@@ -196,6 +196,7 @@ class RoundingMaker {
     } else {
       shortened_ += network.shortened_edges;
       narrow_ += network.narrow_edges;
+      for (const std::uint32_t h : network.left_sharp) add_clamped(h, 0);
       const BandInput input{mesh_, welded_, regions_, triangle_begin_, triangles_, options_.radius};
       append_bands(input, network, solid, solid.first_arc, bands_);
     }
@@ -247,8 +248,15 @@ class RoundingMaker {
       if (!made[i]) continue;
       bands_.insert(bands_.end(), made[i]->bands.begin(), made[i]->bands.end());
       for (const std::uint32_t s : wanted[i]) join(s, wanted[i].front());
+      for (const std::uint32_t h : made[i]->left_sharp) add_clamped(h, 0);
+      left_in_creased_ += made[i]->left_sharp.size();
       data_->creased.push_back(std::make_unique<const CreasedSolid>(std::move(made[i]->solid)));
     }
+  }
+
+  void add_clamped(std::uint32_t half_edge, double radius) {
+    data_->report.clamped.push_back({Vec3d(welded_.vertices[welded_.origin(half_edge)]),
+                                     Vec3d(welded_.vertices[welded_.target(half_edge)]), radius});
   }
 
   // Makes a shell part of the creased solid to come, in coordinates relative to the outer one's centre.
@@ -498,6 +506,7 @@ class RoundingMaker {
     RoundingReport& report = data_->report;
     report.solids = data_->solids.size();
     std::uint64_t open = 0, other = 0;
+    report.rounded_edges -= std::min(report.rounded_edges, left_in_creased_);
     for (const Solid& solid : data_->solids) {
       report.convex_solids += solid.convex && solid.closed ? 1 : 0;
       const bool creased = solid.creased != kNone;
@@ -526,7 +535,8 @@ class RoundingMaker {
          "non-manifold edges stay sharp");
     note(shortened_, "edge stays sharp: the radius needs more length than it has",
          "edges stay sharp: the radius needs more length than they have");
-    note(narrow_, "edge stays sharp: the radius is too large for the faces beside it",
+    note(narrow_ + left_in_creased_,
+         "edge stays sharp: the radius is too large for the faces beside it",
          "edges stay sharp: the radius is too large for the faces beside them");
     note(too_small_, "solid stays sharp: no ball of the radius fits into it",
          "solids stay sharp: no ball of the radius fits into them");
@@ -561,7 +571,7 @@ class RoundingMaker {
   bool keep_networks_ = false;
   std::vector<ShellNetwork> networks_;
   std::uint64_t cavities_ = 0, shortened_ = 0, narrow_ = 0, too_small_ = 0, unasked_ = 0;
-  std::uint64_t filled_edges_ = 0;
+  std::uint64_t filled_edges_ = 0, left_in_creased_ = 0;
 };
 
 }  // namespace

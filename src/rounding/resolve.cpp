@@ -227,16 +227,26 @@ class CreasedHit {
       return make(Resolution::Outcome::passed, at_.t, normal_, Feature::face);
     }
     const bool covered = is_covered(at_.x, at_.face);
-    const bool kept = inner_ == nullptr || inner_->is_kept(at_.x, normal_, at_.face);
+    const bool kept = inner_ == nullptr || is_kept(at_.x, at_.face);
     if (covered && (entering_ || kept)) return through_fillet(kept);
     if (inner_ == nullptr) return std::nullopt;
     if (!entering_ && start_ == RayStart::outside) return out_of_void(ray, covered);
-    if (kept) return make(Resolution::Outcome::kept, at_.t, normal_, Feature::face);
+    if (kept) return stay();
     return entering_ ? into_void() : from_inside();
   }
 
  private:
   [[nodiscard]] const Face& face() const { return data_.faces[at_.face]; }
+
+  [[nodiscard]] bool is_kept(Vec3d x, std::uint32_t face) const {
+    return inner_->is_kept(x, Vec3d(data_.faces[face].normal), face);
+  }
+  [[nodiscard]] bool leaves_void(Vec3d direction, double end, std::uint32_t region) const {
+    return inner_->is_through_material(at_.x, at_.face, direction, end, region);
+  }
+  [[nodiscard]] Resolution stay() const {
+    return make(Resolution::Outcome::kept, at_.t, normal_, Feature::face);
+  }
 
   // Whether a fillet lies on the face.
   [[nodiscard]] bool is_covered(Vec3d x, std::uint32_t face) const {
@@ -265,7 +275,7 @@ class CreasedHit {
     if (met && t >= 0) return make(Resolution::Outcome::moved, t, -met->normal, Feature::fillet);
     if (entering_ && start_ == RayStart::outside) {
       // From the fillet's far side into the void, or, by rounding errors, from its surface: then the face stands.
-      return kept ? make(Resolution::Outcome::kept, at_.t, normal_, Feature::face) : into_void();
+      return kept ? stay() : into_void();
     }
     if (!kept) return make(Resolution::Outcome::moved, at_.t, -normal_, Feature::fillet);
     return make(Resolution::Outcome::passed, at_.t, normal_, Feature::fillet);
@@ -287,6 +297,7 @@ class CreasedHit {
   [[nodiscard]] Resolution into_void() const {
     const auto [met, exit] = inner_->cross_void(at_.x, at_.direction);
     if (met) {
+      if (leaves_void(at_.direction, met->t, kNone)) return stay();
       return make(Resolution::Outcome::moved, at_.t + met->t / at_.scale, met->normal,
                   feature_of(*met));
     }
@@ -294,12 +305,15 @@ class CreasedHit {
       return make(Resolution::Outcome::moved, at_.t + exit.t / at_.scale,
                   -Vec3d(data_.faces[exit.region].normal), Feature::fillet);
     }
+    if (exit.region != kNone && leaves_void(at_.direction, exit.t, exit.region)) return stay();
     return make(Resolution::Outcome::passed, at_.t, normal_, Feature::face);
   }
 
   // Looked at backwards.
   [[nodiscard]] Resolution from_inside() const {
     const auto met = inner_->cross_void(at_.x, -at_.direction).met;
+    if (met && leaves_void(-at_.direction, met->t, kNone)) return stay();
+    if (!met && start_ == RayStart::inside) return stay();
     if (!met) return make(Resolution::Outcome::passed, at_.t, normal_, Feature::face);
     return make(Resolution::Outcome::moved, at_.t - met->t / at_.scale, met->normal,
                 feature_of(*met));

@@ -10,7 +10,9 @@ namespace {
 
 // Cosine of the turn beyond which a ball in one face's place does not belong to the other's surface.
 constexpr double kMostTurn = -0.5;
-constexpr std::size_t kFacesAtOnce = 64;
+constexpr std::size_t kFacesAtOnce = 64, kTrianglesAtOnce = 256;
+// Cosine between the normals of a wall's two sides, at most.
+constexpr double kOpposite = -0.8;
 // Relative to the radius: what is no nearer than this short of it only touches.
 constexpr double kTouching = 1e-6;
 
@@ -32,6 +34,16 @@ class ReachFinder {
     for (const auto& [face, other] : in_.smooth) {
       if (curved_.empty() || curved_.back() != face) curved_.push_back(face);
     }
+  }
+
+  [[nodiscard]] std::vector<FacePair> thin_walls() const {
+    const std::span<const SurfaceTriangle> triangles = in_.surface.triangles();
+    std::vector<FacePair> pairs = parallel_collect<FacePair>(
+        triangles.size(), kTrianglesAtOnce,
+        [&](std::size_t i, std::vector<FacePair>& list) { add_thin_walls(triangles[i], list); });
+    std::ranges::sort(pairs);
+    pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
+    return pairs;
   }
 
   [[nodiscard]] std::vector<FacePair> run() const {
@@ -58,6 +70,23 @@ class ReachFinder {
     for (const std::uint32_t other : reached) {
       if (other != face) list.emplace_back(face, other);
     }
+  }
+
+  void add_thin_walls(const SurfaceTriangle& own, std::vector<FacePair>& list) const {
+    const Vec3d normal = normal_of(own.region), down = normal * in_.radius, reach(in_.radius);
+    const std::array<Vec3d, 3> offset{own.p0 - down, own.p1 - down, own.p2 - down};
+    const Vec3d low = min(offset[0], min(offset[1], offset[2])) - reach;
+    const Vec3d high = max(offset[0], max(offset[1], offset[2])) + reach;
+    const std::size_t first = list.size();
+    in_.surface.for_each_near(low, high, [&](const SurfaceTriangle& t) {
+      if (t.region == own.region || dot(normal, normal_of(t.region)) > kOpposite) return;
+      if (!cuts_into(offset, normal, t)) return;
+      const FacePair pair(own.region, t.region);
+      if (std::ranges::binary_search(in_.sharp, pair)) return;
+      if (std::find(list.begin() + std::ptrdiff_t(first), list.end(), pair) != list.end()) return;
+      list.push_back(pair);
+      list.emplace_back(t.region, own.region);
+    });
   }
 
   // Whether a triangle may be nearer than r to the centres of balls that touch one of this normal.
@@ -103,6 +132,10 @@ class ReachFinder {
 
 std::vector<FacePair> find_smooth_reach(const SmoothReachInput& input) {
   return ReachFinder(input).run();
+}
+
+std::vector<FacePair> find_thin_walls(const SmoothReachInput& input) {
+  return ReachFinder(input).thin_walls();
 }
 
 }  // namespace arris

@@ -28,4 +28,8 @@ struct SmoothReachInput {
 // Sorted: a face, and one that its balls may cut into.
 std::vector<FacePair> find_smooth_reach(const SmoothReachInput& input);
 
+// Sorted, each pair in both orders: faces about opposite to each other with less than two radii of material between
+// them, but for those that meet in a sharp edge.
+std::vector<FacePair> find_thin_walls(const SmoothReachInput& input);
+
 }  // namespace arris

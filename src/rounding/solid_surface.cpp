@@ -20,6 +20,9 @@ std::vector<Box> boxes_of(const std::vector<SurfaceTriangle>& triangles, double 
   return boxes;
 }
 
+// Relative to the radius: what is no farther below a plane than this is on it.
+constexpr double kOnPlane = 1e-4;
+
 // On which side of the line a→b the ray passes; the exact negative for b→a, so that no ray slips between triangles.
 double side_of(Vec3d origin, Vec3d direction, Vec3d a, Vec3d b) {
   if (b.x < a.x || (b.x == a.x && (b.y < a.y || (b.y == a.y && b.z < a.z)))) {
@@ -75,7 +78,33 @@ bool SolidSurface::is_near(Vec3d x, double distance, std::uint32_t but_region) c
     found = length_squared(x - nearest_on_triangle(x, t)) < distance * distance &&
             !is_joined(but_region, t.region);
   });
-  return found;
+  if (!found || thin_.empty()) return found;
+  const auto has_thin = std::ranges::lower_bound(thin_, but_region, {}, &FacePair::first);
+  if (has_thin == thin_.end() || has_thin->first != but_region) return true;
+  return is_near_before(x, distance, but_region);
+}
+
+// The same where walls are thin: what lies beyond the far side of one does not count.
+bool SolidSurface::is_near_before(Vec3d x, double distance, std::uint32_t but_region) const {
+  std::vector<const SurfaceTriangle*> far_sides;
+  std::vector<Vec3d> near;
+  for_each_near(x - Vec3d(distance), x + Vec3d(distance), [&](const SurfaceTriangle& t) {
+    if (t.region == but_region || is_joined(but_region, t.region)) return;
+    const Vec3d p = nearest_on_triangle(x, t);
+    if (!(length_squared(x - p) < distance * distance)) return;
+    if (is_thin(but_region, t.region)) {
+      far_sides.push_back(&t);
+    } else {
+      near.push_back(p);
+    }
+  });
+  const auto is_beyond = [&](Vec3d p) {
+    return std::ranges::any_of(far_sides, [&](const SurfaceTriangle* t) {
+      const Vec3d normal = cross(t->p1 - t->p0, t->p2 - t->p0);
+      return dot(normal, p - t->p0) >= -kOnPlane * distance * length(normal);
+    });
+  };
+  return !std::ranges::all_of(near, is_beyond);
 }
 
 SolidSurface::Exit SolidSurface::first_exit(Vec3d origin, Vec3d direction, double after) const {
@@ -96,8 +125,8 @@ SolidSurface::Exit SolidSurface::first_exit(Vec3d origin, Vec3d direction, doubl
 }
 
 std::size_t SolidSurface::bytes() const {
-  return triangles_.size() * sizeof(SurfaceTriangle) + joined_.size() * sizeof(FacePair) +
-         tree_.bytes();
+  return triangles_.size() * sizeof(SurfaceTriangle) +
+         (joined_.size() + thin_.size()) * sizeof(FacePair) + tree_.bytes();
 }
 
 }  // namespace arris

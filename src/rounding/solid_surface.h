@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -34,11 +35,17 @@ class SolidSurface {
 
   // joined: see smooth_reach.h
   void set_joined(std::vector<FacePair> joined) { joined_ = std::move(joined); }
+  // thin: faces with less than two radii of material between them, or with an edge that stays sharp, each pair in both
+  // orders; sorted. What touches one may cut into the other, and into what lies beyond that.
+  void set_thin(std::vector<FacePair> thin) { thin_ = std::move(thin); }
   // Whether what touches a face may cut into another one.
   [[nodiscard]] bool is_joined(std::uint32_t face, std::uint32_t other) const {
     return !joined_.empty() && std::ranges::binary_search(joined_, FacePair(face, other));
   }
   [[nodiscard]] bool is_curved() const { return !joined_.empty(); }
+  [[nodiscard]] bool is_thin(std::uint32_t face, std::uint32_t other) const {
+    return !thin_.empty() && std::ranges::binary_search(thin_, FacePair(face, other));
+  }
 
   // Whether a triangle of another region, one that isn't joined to it, is nearer to x than `distance`.
   [[nodiscard]] bool is_near(Vec3d x, double distance, std::uint32_t but_region) const;
@@ -61,7 +68,9 @@ class SolidSurface {
 
  private:
   std::vector<SurfaceTriangle> triangles_;
-  std::vector<FacePair> joined_;  // sorted
+  [[nodiscard]] bool is_near_before(Vec3d x, double distance, std::uint32_t but_region) const;
+
+  std::vector<FacePair> joined_, thin_;  // sorted
   BoxTree tree_;
 };
 
