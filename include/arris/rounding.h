@@ -35,6 +35,9 @@ struct MeshView {
   std::span<const Triangle> triangles;
   // As in Mesh. Set: these edges are sharp and no others, and no minimum angle is asked.
   std::optional<std::span<const VertexPair>> sharp_edges{};
+  std::span<const EdgeRadius> edge_radii{};  // as in Mesh; rules go before
+  // Where the vertices lie in the space of EdgeRule's places; empty: at `positions`.
+  std::span<const Vec3f> places{};
 };
 
 // How a hit finds the rounding near it (paper §3.2 against the index by face; bench/rounding compares). The tree
@@ -50,6 +53,8 @@ struct RoundingOptions {
   double min_angle = radians(30);
   Detection detection = Detection::face_index;
   TooLarge too_large = TooLarge::error;
+  OnOverlap on_overlap = OnOverlap::report;
+  std::vector<EdgeRule> rules;  // radii in the mesh's units; closed solids' convex edges only
 };
 
 // Position along a ray: origin + t * direction.

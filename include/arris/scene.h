@@ -24,6 +24,14 @@ namespace arris {
 // Two vertices of a mesh.
 using VertexPair = std::array<std::uint32_t, 2>;
 
+// An edge of a mesh with a rounding radius of its own.
+struct EdgeRadius {
+  VertexPair vertices{};  // of one of its triangles
+  float radius = 0;       // in the mesh's units; 0: it stays sharp
+
+  friend bool operator==(const EdgeRadius&, const EdgeRadius&) = default;
+};
+
 // Triangles in object space. Positions need not be welded: preparation welds them into solids.
 struct Mesh {
   std::string name;
@@ -35,6 +43,8 @@ struct Mesh {
   // Set where the file says which edges are sharp: these, by the vertices of one of their triangles; no others, however
   // far they turn.
   std::optional<std::vector<VertexPair>> sharp_edges{};
+  // Where objects are rounded: radii that go before the object's. Edges that would not be rounded stay so.
+  std::vector<EdgeRadius> edge_radii{};
 };
 
 // 8-bit texels, row 0 at the top. uv (0,0) is the upper left corner (glTF's convention;
@@ -91,6 +101,22 @@ struct PercentOfInradius {
 using Radius = std::variant<AutoRadius, double, PercentOfInradius>;
 
 enum class RoundEdges { convex, concave, both };
+// What becomes of edges beside which the radius has no room: they stay sharp and are reported, or get a smaller one.
+enum class OnOverlap { report, clamp };
+
+// Convex edges of an object that have a radius of their own: those for which all holds that is given.
+struct EdgeRule {
+  double radius = 0;     // world units; 0: they stay sharp
+  bool is_part = false;  // the radius is a part of the object's
+  // Least and most angle between the normals of the two faces, in radians.
+  std::optional<std::array<double, 2>> turn;
+  // Corners of a box in which both ends lie, in the object's space.
+  std::optional<std::array<Vec3d, 2>> box;
+  // One of these segments has the edge on it, in the object's space; empty: no matter.
+  std::vector<std::array<Vec3d, 2>> segments;
+
+  friend bool operator==(const EdgeRule&, const EdgeRule&) = default;
+};
 enum class RoundMethod { none, exact, shader, mesh };
 
 // The bevel shader's parameters (Anders; names as in the blog). Lengths in world units.
@@ -108,6 +134,8 @@ struct RoundingSettings {
   double min_angle = radians(30);  // turns below are part of a smooth surface
   int subdivisions = 3;            // method mesh
   BevelShaderSettings shader;      // method shader
+  OnOverlap on_overlap = OnOverlap::report;
+  std::vector<EdgeRule> rules;  // method exact; the last that holds counts
   friend bool operator==(const RoundingSettings&, const RoundingSettings&) = default;
 };
 

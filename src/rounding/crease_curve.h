@@ -26,6 +26,7 @@ struct CreaseCurve {
   bool is_line = true;  // else an ellipse with half axes a and b
   double u0 = 0, u1 = 0;
   std::uint32_t face_a = kNone, face_b = kNone;  // regions of those of the features that are faces
+  double r0 = 0, r1 = 0;  // of the balls at u0 and u1, and linear between; the same but on a line
 
   [[nodiscard]] Vec3d at(double u) const;
   [[nodiscard]] Vec3d derivative(double u) const;
@@ -43,10 +44,10 @@ struct ArcEnds {
 };
 double nearest_parameter(const CreaseCurve& curve, const ArcEnds& ends, Vec3d x, double guess);
 
-// Lines and ellipses have their whole extent, or [−extent, extent].
 // The distance from a segment, or from a short part of an arc.
 double distance_to(const CreaseCurve& part, Vec3d x);
 
+// Lines and ellipses have their whole extent, or [−extent, extent].
 std::optional<CreaseCurve> face_face_crease(const Plane& a, const Plane& b, double radius,
                                             Vec3d near, double extent);
 struct EdgeLine {

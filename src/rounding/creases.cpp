@@ -100,6 +100,7 @@ class CreaseFinder {
                                            add_edge_edges(corners_[i], list);
                                            add_face_corners(corners_[i], list);
                                          }));
+    for (CreaseCurve& curve : out) curve.r0 = curve.r1 = r_;
     return found;
   }
 

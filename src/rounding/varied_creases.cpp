@@ -1,0 +1,346 @@
+#include "rounding/varied_creases.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <optional>
+#include <unordered_map>
+#include <utility>
+
+#include "base/parallel_collect.h"
+
+namespace arris {
+namespace {
+
+constexpr int kTransitionSteps = 6;
+// The length of a transition, in what the radius grows by: a smooth step is steepest by 0.75 then, and balls whose
+// radius grew as fast as they move would have no cone.
+constexpr double kTransition = 2;
+// In radii: how far a corner's radius goes on beyond where its creases end.
+constexpr double kMargin = 0.25;
+// A radius is halved so often where there is no room.
+constexpr int kHalvings = 3;
+constexpr int kMostRounds = 200;
+// In radii: steps in which a curve is looked at; and most of them.
+constexpr double kStep = 0.25;
+constexpr int kMostSteps = 2000;
+constexpr std::size_t kCurvesAtOnce = 64;
+// Radii that differ by no more are the same.
+constexpr double kSameRadius = 1e-9;
+
+struct Interval {
+  double low, high;
+};
+
+double smooth_step(double x) {
+  return x * x * (3 - 2 * x);
+}
+
+class VariedFinder {
+ public:
+  explicit VariedFinder(const VariedInput& input)
+      : in_(input.solid), clamp_(input.clamp), radii_(input.radii) {
+    collect_edges();
+  }
+
+  VariedCreases run() {
+    settle();
+    make_field();
+    for (const auto& [radius, found] : classes_) {
+      if (is_used(radius)) add_class(radius, found.curves);
+    }
+    for (std::size_t i = 0; i < edges_.size(); ++i) {
+      if (profiles_[i].knots.size() > 2) add_transitions(edges_[i], profiles_[i]);
+    }
+    for (const Edge& e : edges_) {
+      if (e.radius < e.asked) out_.smaller.push_back({e.half_edge, e.radius});
+      if (e.is_missing) out_.missing.push_back(e.faces);
+    }
+    std::ranges::sort(out_.missing);
+    out_.missing.erase(std::unique(out_.missing.begin(), out_.missing.end()), out_.missing.end());
+    return std::move(out_);
+  }
+
+ private:
+  struct Edge {
+    std::uint32_t half_edge, vertex0, vertex1;
+    FacePair faces;
+    Vec3d p0, direction;
+    double length;
+    double asked, radius;
+    bool is_missing = false;
+  };
+  // Radii of an edge's ends, and how far each goes.
+  struct Ends {
+    double radius0, radius1;
+    double until0, until1;
+  };
+
+  [[nodiscard]] Vec3d local(std::uint32_t vertex) const {
+    return Vec3d(in_.mesh.vertices[vertex]) - in_.center;
+  }
+
+  void collect_edges() {
+    for (const std::uint32_t s : in_.shells) {
+      const Shell& shell = in_.mesh.shells[s];
+      for (std::uint32_t i = 0; i < shell.triangle_count; ++i) {
+        const std::uint32_t t = in_.mesh.triangles_by_shell[shell.first_triangle + i];
+        for (std::uint32_t h = 3 * t; h < 3 * t + 3; ++h) {
+          const std::uint32_t twin = in_.mesh.twin[h];
+          if (in_.kinds[h] != EdgeKind::convex || twin < h) continue;
+          const std::uint32_t a = in_.regions.region[t], b = in_.regions.region[twin / 3];
+          Edge e{h, in_.mesh.origin(h), in_.mesh.target(h), std::minmax(a, b), {}, {},
+                 0, radii_[h],          radii_[h]};
+          e.p0 = local(e.vertex0);
+          const Vec3d along = local(e.vertex1) - e.p0;
+          e.length = length(along);
+          e.direction = along / e.length;
+          edges_.push_back(e);
+        }
+      }
+    }
+  }
+
+  [[nodiscard]] const FoundCreases& class_of(double radius) {
+    const auto [at, is_new] = classes_.try_emplace(radius);
+    if (is_new) {
+      at->second = find_creases({in_.mesh, in_.regions, in_.kinds, in_.shells, in_.surface,
+                                 in_.center, in_.size, radius});
+      auto& lines = lines_[radius];
+      for (const CreaseCurve& c : at->second.curves) {
+        if (c.is_line && c.face_b != kNone) lines.emplace_back(FacePair(c.face_a, c.face_b), c);
+      }
+      std::ranges::stable_sort(lines, {}, [](const auto& line) { return line.first; });
+    }
+    return at->second;
+  }
+
+  // Where along an edge balls of the radius touch both of its faces and nothing else.
+  [[nodiscard]] std::vector<Interval> room(const Edge& e, double radius) {
+    (void)class_of(radius);
+    const auto& lines = lines_[radius];
+    std::vector<Interval> room;
+    for (auto at =
+             std::ranges::lower_bound(lines, e.faces, {}, [](const auto& l) { return l.first; });
+         at != lines.end() && at->first == e.faces; ++at) {
+      const CreaseCurve& c = at->second;
+      const double v0 = dot(c.at(c.u0) - e.p0, e.direction);
+      const double v1 = dot(c.at(c.u1) - e.p0, e.direction);
+      const Interval piece{std::min(v0, v1), std::max(v0, v1)};
+      if (piece.high > 0 && piece.low < e.length) room.push_back(piece);
+    }
+    return room;
+  }
+
+  // Corners have the smallest radius of their edges.
+  void find_corners() {
+    corners_.clear();
+    for (const Edge& e : edges_) {
+      for (const std::uint32_t v : {e.vertex0, e.vertex1}) {
+        const auto [at, is_new] = corners_.try_emplace(v, e.radius);
+        at->second = std::min(at->second, e.radius);
+      }
+    }
+  }
+
+  void settle() {
+    for (int round = 0; round < kMostRounds; ++round) {
+      find_corners();
+      bool changed = false;
+      for (Edge& e : edges_) {
+        const double before = e.radius;
+        if (!fits(e)) lower(e);
+        changed = changed || e.radius != before;
+      }
+      if (!changed) return;
+    }
+  }
+
+  [[nodiscard]] std::optional<Ends> ends_of(const Edge& e) {
+    Ends ends{corners_.at(e.vertex0), corners_.at(e.vertex1), 0, 0};
+    if (ends.radius0 > 0) {
+      const std::vector<Interval> free = room(e, ends.radius0);
+      if (free.empty()) return std::nullopt;
+      const double low = std::ranges::min_element(free, {}, &Interval::low)->low;
+      ends.until0 = std::max(low, 0.0) + kMargin * ends.radius0;
+    }
+    if (ends.radius1 > 0) {
+      const std::vector<Interval> free = room(e, ends.radius1);
+      if (free.empty()) return std::nullopt;
+      const double high = std::ranges::max_element(free, {}, &Interval::high)->high;
+      ends.until1 = std::max(e.length - high, 0.0) + kMargin * ends.radius1;
+    }
+    return ends;
+  }
+
+  [[nodiscard]] bool is_even(const Edge& e) const {
+    return corners_.at(e.vertex0) == e.radius && corners_.at(e.vertex1) == e.radius;
+  }
+
+  // Whether the edge's radius and its transitions have room; an edge of one radius that has none is missing.
+  [[nodiscard]] bool fits(Edge& e) {
+    if (e.radius == 0) return true;
+    if (is_even(e)) {
+      e.is_missing = std::ranges::binary_search(class_of(e.radius).missing, e.faces);
+      return !(e.is_missing && clamp_);
+    }
+    const std::optional<Ends> ends = ends_of(e);
+    if (!ends) return false;
+    const double low = ends->until0 + kTransition * (e.radius - ends->radius0);
+    const double high = e.length - ends->until1 - kTransition * (e.radius - ends->radius1);
+    if (low > high) return false;
+    const double slack = kSameRadius * e.length;
+    const auto covers = [&](const Interval& i) {
+      return i.low <= low + slack && i.high >= high - slack;
+    };
+    if (std::ranges::none_of(room(e, e.radius), covers)) return false;
+    return are_free(e, profile_of(e, *ends));
+  }
+
+  void lower(Edge& e) const {
+    const auto [low, high] = std::minmax({corners_.at(e.vertex0), corners_.at(e.vertex1)});
+    if (e.radius > high) {
+      e.radius = high;
+    } else if (e.radius > low) {
+      e.radius = low;
+    } else {
+      e.radius *= 0.5;
+      if (e.radius < std::ldexp(e.asked, -kHalvings) * (1 - kSameRadius)) e.radius = 0;
+    }
+  }
+
+  [[nodiscard]] EdgeProfile profile_of(const Edge& e, const Ends& ends) const {
+    EdgeProfile profile{e.p0, e.direction, e.length, {}};
+    std::vector<RadiusKnot>& knots = profile.knots;
+    const auto add = [&](double v, double radius) {
+      if (knots.empty() || v > knots.back().v) knots.push_back({v, radius});
+    };
+    add(0, ends.radius0);
+    const double grown = e.radius - ends.radius0, shrunk = e.radius - ends.radius1;
+    for (int i = 0; grown > 0 && i <= kTransitionSteps; ++i) {
+      const double part = double(i) / kTransitionSteps;
+      add(ends.until0 + kTransition * grown * part, ends.radius0 + grown * smooth_step(part));
+    }
+    const double from = e.length - ends.until1 - kTransition * shrunk;
+    for (int i = 0; shrunk > 0 && i <= kTransitionSteps; ++i) {
+      const double part = double(i) / kTransitionSteps;
+      add(from + kTransition * shrunk * part, e.radius - shrunk * smooth_step(part));
+    }
+    add(e.length, ends.radius1);
+    return profile;
+  }
+
+  // The centre of the ball that touches both faces at a place of the edge.
+  [[nodiscard]] Vec3d center_at(const Edge& e, RadiusKnot at) const {
+    const Vec3d a = in_.regions.planes[e.faces.first].normal;
+    const Vec3d b = in_.regions.planes[e.faces.second].normal;
+    return e.p0 + e.direction * at.v - (a + b) * (at.radius / (1 + dot(a, b)));
+  }
+
+  [[nodiscard]] bool are_free(const Edge& e, const EdgeProfile& profile) const {
+    const double tolerance = crease_tolerance(in_.size, e.radius);
+    return std::ranges::none_of(profile.knots, [&](const RadiusKnot& knot) {
+      const bool is_end = knot.v <= 0 || knot.v >= e.length;
+      return !is_end && knot.radius > tolerance &&
+             in_.surface.is_near(center_at(e, knot), knot.radius - tolerance, e.faces.first);
+    });
+  }
+
+  void make_field() {
+    find_corners();
+    for (Edge& e : edges_) {
+      const std::optional<Ends> ends = is_even(e) || e.radius == 0 ? std::nullopt : ends_of(e);
+      profiles_.push_back(
+          ends ? profile_of(e, *ends)
+               : EdgeProfile{e.p0, e.direction, e.length, {{0, e.radius}, {e.length, e.radius}}});
+    }
+    out_.field = RadiusField(profiles_);
+  }
+
+  [[nodiscard]] bool is_used(double radius) const {
+    return std::ranges::any_of(edges_, [&](const Edge& e) { return e.radius == radius; });
+  }
+
+  // Whether the field has a curve's radius where the ball at a place of it touches.
+  [[nodiscard]] bool is_of_field(const CreaseCurve& c, double u, double radius) const {
+    const Vec3d x = c.at(u);
+    const auto is_same = [&](Vec3d p) {
+      return std::abs(out_.field.at(p) - radius) <= kSameRadius * radius;
+    };
+    bool any = false;
+    for (const std::uint32_t face : {c.face_a, c.face_b}) {
+      if (face == kNone) continue;
+      any = true;
+      if (!is_same(x + in_.regions.planes[face].normal * radius)) return false;
+    }
+    return any || is_same(x);
+  }
+
+  void add_class(double radius, const std::vector<CreaseCurve>& curves) {
+    const auto more = parallel_collect<CreaseCurve>(
+        curves.size(), kCurvesAtOnce,
+        [&](std::size_t i, auto& list) { cut(curves[i], radius, list); });
+    out_.curves.insert(out_.curves.end(), more.begin(), more.end());
+  }
+
+  // The parts of a curve whose balls the field wants.
+  void cut(const CreaseCurve& curve, double radius, std::vector<CreaseCurve>& list) const {
+    const double extent =
+        (curve.u1 - curve.u0) * (curve.is_line ? 1 : std::max(length(curve.a), length(curve.b)));
+    const int steps = std::clamp(int(std::ceil(extent / (kStep * radius))), 4, kMostSteps);
+    const auto place = [&](int i) { return curve.u0 + (curve.u1 - curve.u0) * i / steps; };
+    CreaseCurve open = curve;
+    bool is_open = is_of_field(curve, curve.u0, radius);
+    for (int i = 1; i <= steps; ++i) {
+      const bool now = is_of_field(curve, place(i), radius);
+      if (now == is_open) continue;
+      double low = place(i - 1), high = place(i);
+      for (int k = 0; k < 40; ++k) {
+        const double middle = 0.5 * (low + high);
+        (is_of_field(curve, middle, radius) == is_open ? low : high) = middle;
+      }
+      if (now) open.u0 = high;
+      open.u1 = low;
+      if (is_open) list.push_back(open);
+      is_open = now;
+    }
+    open.u1 = curve.u1;
+    if (is_open) list.push_back(open);
+  }
+
+  void add_transitions(const Edge& e, const EdgeProfile& profile) {
+    for (std::size_t i = 1; i < profile.knots.size(); ++i) {
+      const RadiusKnot &from = profile.knots[i - 1], &to = profile.knots[i];
+      if (from.radius == to.radius) continue;
+      const Vec3d c0 = center_at(e, from), along = center_at(e, to) - c0;
+      CreaseCurve cone;
+      cone.center = c0;
+      cone.a = normalize(along);
+      cone.u1 = length(along);
+      cone.face_a = e.faces.first;
+      cone.face_b = e.faces.second;
+      cone.r0 = from.radius;
+      cone.r1 = to.radius;
+      out_.curves.push_back(cone);
+    }
+  }
+
+  const CreaseInput& in_;
+  bool clamp_;
+  std::span<const double> radii_;
+  std::vector<Edge> edges_;
+  std::unordered_map<std::uint32_t, double> corners_;                      // by vertex
+  std::map<double, FoundCreases> classes_;                                 // by radius
+  std::map<double, std::vector<std::pair<FacePair, CreaseCurve>>> lines_;  // of these; sorted
+  std::vector<EdgeProfile> profiles_;
+  VariedCreases out_;
+};
+
+}  // namespace
+
+VariedCreases find_varied_creases(const VariedInput& input) {
+  return VariedFinder(input).run();
+}
+
+}  // namespace arris

@@ -1,0 +1,40 @@
+// varied_creases.h — the creases of a solid whose edges have radii of their own
+// What       Each corner has the smallest radius of its convex edges, and the creases about it are those of that one
+//            radius (creases.h). Along an edge the radius then grows to the edge's own, by balls between its two faces: the
+//            cone that these fill touches both. An edge without radius stays sharp, and the roundings that meet it run out.
+//            Balls of all radii lie in the solid, so what is left of it is closed.
+// In / Out   coordinates relative to the solid's centre
+// Guarantee  the profile of an edge is a smooth step of kTransitionSteps pieces, twice as long as the radius grows
+// Limits     an edge too short for its transitions, or without room for them, takes the smaller radius of its ends
+// Cost       that of find_creases() for each radius
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "rounding/creases.h"
+#include "rounding/radius_field.h"
+
+namespace arris {
+
+struct VariedInput {
+  const CreaseInput& solid;       // its radius is of no account
+  std::span<const double> radii;  // per half-edge of the mesh
+  bool clamp = false;             // edges without room take a smaller radius, else they stay sharp
+};
+
+struct VariedCreases {
+  struct Edge {
+    std::uint32_t half_edge;
+    double radius;
+  };
+  std::vector<CreaseCurve> curves;
+  RadiusField field{0};
+  std::vector<Edge> smaller;      // have a smaller radius than they should
+  std::vector<FacePair> missing;  // as in FoundCreases
+};
+
+VariedCreases find_varied_creases(const VariedInput& input);
+
+}  // namespace arris
