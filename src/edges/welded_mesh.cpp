@@ -33,6 +33,20 @@ void check_mesh(const MeshView& mesh, const std::string& name) {
                       std::to_string(mesh.positions.size()));
     }
   }
+  for (const EdgeRadius& edge : mesh.edge_radii) {
+    const std::uint32_t vertex = std::max(edge.vertices[0], edge.vertices[1]);
+    if (vertex >= mesh.positions.size()) {
+      throw Error(Error::Kind::input, name,
+                  "an edge with a radius has the vertex " + std::to_string(vertex) +
+                      ", but there are only " + std::to_string(mesh.positions.size()));
+    }
+    if (!(edge.radius >= 0) || !std::isfinite(edge.radius)) {
+      throw Error(Error::Kind::input, name,
+                  "the edge of the vertices " + std::to_string(edge.vertices[0]) + " and " +
+                      std::to_string(edge.vertices[1]) + " has the radius " +
+                      std::to_string(edge.radius) + "; it must be a number not below 0");
+    }
+  }
   if (mesh.triangles.size() > kLastHalfEdge / 3) {
     throw Error(Error::Kind::input, name,
                 "has " + std::to_string(mesh.triangles.size()) + " triangles; at most " +
@@ -50,6 +64,22 @@ std::vector<VertexPair> weld_pairs(std::span<const VertexPair> pairs,
   }
   std::sort(welded.begin(), welded.end());
   welded.erase(std::unique(welded.begin(), welded.end()), welded.end());
+  return welded;
+}
+
+std::vector<EdgeRadius> weld_radii(std::span<const EdgeRadius> edges,
+                                   std::span<const std::uint32_t> vertex_of) {
+  std::vector<EdgeRadius> welded;
+  for (const EdgeRadius& edge : edges) {
+    const std::uint32_t a = vertex_of[edge.vertices[0]], b = vertex_of[edge.vertices[1]];
+    if (a != b) welded.push_back({{std::min(a, b), std::max(a, b)}, edge.radius});
+  }
+  std::ranges::sort(welded, {},
+                    [](const EdgeRadius& e) { return std::pair(e.vertices, e.radius); });
+  const auto is_same = [](const EdgeRadius& e, const EdgeRadius& f) {
+    return e.vertices == f.vertices;
+  };
+  welded.erase(std::unique(welded.begin(), welded.end(), is_same), welded.end());
   return welded;
 }
 
@@ -324,6 +354,9 @@ WeldedMesh make_welded_mesh(const MeshView& mesh, const std::string& name) {
     welded.triangles.push_back({vertex_of[t[0]], vertex_of[t[1]], vertex_of[t[2]]});
     welded.degenerate_triangles += is_degenerate(welded.triangles.back()) ? 1 : 0;
   }
+  welded.edge_radii = weld_radii(mesh.edge_radii, vertex_of);
+  welded.source.resize(welded.vertices.size());
+  for (std::uint32_t i = 0; i < vertex_of.size(); ++i) welded.source[vertex_of[i]] = i;
   if (mesh.sharp_edges) welded.sharp_edges = weld_pairs(*mesh.sharp_edges, vertex_of);
   find_twins(welded);
   while (JunctionHealer(welded).heal()) find_twins(welded);

@@ -54,6 +54,8 @@ struct WeldedMesh {
   std::uint64_t healed_junctions = 0;             // vertices on open edges of other triangles
   // Those of MeshView, sorted, the smaller vertex first. Pieces of split triangles have none.
   std::optional<std::vector<VertexPair>> sharp_edges;
+  std::vector<EdgeRadius> edge_radii;  // the same; where an edge has several, the smallest
+  std::vector<std::uint32_t> source;   // per vertex: one of the caller's
 
   [[nodiscard]] std::uint32_t origin(std::uint32_t h) const { return triangles[h / 3][h % 3]; }
   [[nodiscard]] static std::uint32_t next(std::uint32_t h) { return h % 3 == 2 ? h - 2 : h + 1; }

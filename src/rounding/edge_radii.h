@@ -1,0 +1,19 @@
+// edge_radii.h — which convex edges have a radius of their own
+// What       MeshView::edge_radii, and RoundingOptions::rules, which go before
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "arris/rounding.h"
+#include "edges/flat_regions.h"
+#include "edges/welded_mesh.h"
+
+namespace arris {
+
+// Per half-edge, of convex ones; empty if all have the options' radius.
+std::vector<double> find_edge_radii(const MeshView& mesh, const WeldedMesh& welded,
+                                    const FlatRegions& regions, std::span<const EdgeKind> kinds,
+                                    const RoundingOptions& options);
+
+}  // namespace arris
