@@ -33,14 +33,20 @@ bool is_between(Vec3d n, Vec3d a, Vec3d b, Vec3d c) {
 
 }  // namespace
 
-Fillets::Fillets(const CreasedSolid& outside) : outside_(&outside) {
+Fillets::Fillets(const CreasedSolid& outside, std::span<const PlainCrease> plain)
+    : outside_(&outside) {
   for (std::uint32_t i = 0; i < outside.pipes.part_count(); ++i) {
     const CreaseCurve& curve = outside.pipes.curve_of(i);
     const Contacts contacts = contacts_at(curve.at(0.5 * (curve.u0 + curve.u1)));
     // Around a corner the balls touch nothing else: the seam of two offsets, not a crease.
     if (contacts.count < 2) continue;
-    parts_.push_back(
-        {i, curve.is_line && contacts.count == 2, contacts.toward[0], contacts.toward[1]});
+    Part part{i, curve.is_line && contacts.count == 2, contacts.toward[0], contacts.toward[1]};
+    while (!plain.empty() && plain.front().part < i) plain = plain.subspan(1);
+    if (!plain.empty() && plain.front().part == i) {
+      part.plain0 = dot(plain.front().axis, plain.front().p0 - curve.center);
+      part.plain1 = part.plain0 + plain.front().length;
+    }
+    parts_.push_back(part);
   }
 }
 
@@ -105,6 +111,7 @@ bool Fillets::begins_at(const Part& part, const PipePlace& place) const {
     }
     if (!found) return false;
   }
+  if (place.u > part.plain0 && place.u < part.plain1) return true;
   const double r = outside_->radius;
   return !outside_->pipes.holds(c + place.normal * r, r * (1 - kOnBall));
 }

@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "rounding/creased_solid.h"
+#include "rounding/plain_crease.h"
 
 namespace arris {
 
@@ -25,8 +26,8 @@ struct FilletCrossing {
 
 class Fillets {
  public:
-  // `outside`: the creased solid of the space outside.
-  explicit Fillets(const CreasedSolid& outside);
+  // `outside`: the creased solid of the space outside; plain: stretches of its creases.
+  Fillets(const CreasedSolid& outside, std::span<const PlainCrease> plain);
 
   [[nodiscard]] std::size_t part_count() const { return parts_.size(); }
   // Holds the fillet's surface along one part.
@@ -52,6 +53,8 @@ class Fillets {
     // Where the balls around a segment touch: the same all along it.
     bool has_sides = false;
     Vec3d side_a, side_b;
+    // Of the curve, where no other pipe is near.
+    double plain0 = 0, plain1 = 0;
   };
 
   [[nodiscard]] Contacts contacts_at(Vec3d c) const;

@@ -67,7 +67,8 @@ class CreasedMaker {
     CreasedSolid solid{std::move(surface), CreasePipes(std::move(*creases), in_.radius), in_.radius,
                        tolerance, std::move(shape)};
     if (!in_.is_outside) solid.shape.grooves = find_grooves(solid);
-    return MadeCreased{std::move(solid), std::move(bands)};
+    std::vector<PlainCrease> plain = find_plain_creases(solid, in_.regions.planes);
+    return MadeCreased{std::move(solid), std::move(bands), std::move(plain)};
   }
 
  private:

@@ -13,6 +13,7 @@
 #include "edges/welded_mesh.h"
 #include "rounding/bands.h"
 #include "rounding/creased_solid.h"
+#include "rounding/plain_crease.h"
 
 namespace arris {
 
@@ -29,6 +30,7 @@ struct CreasedInput {
 struct MadeCreased {
   CreasedSolid solid;
   std::vector<TriangleBand> bands;
+  std::vector<PlainCrease> plain;
 };
 
 // shells: the outside of one solid, then its hollows. Nothing: something about them is open, the radius takes away a

@@ -14,6 +14,7 @@
 #include "rounding/eroded_polyhedron.h"
 #include "rounding/make_creased.h"
 #include "rounding/outside_mesh.h"
+#include "rounding/plain_lists.h"
 #include "rounding/rounding_data.h"
 #include "rounding/rounding_parts.h"
 
@@ -45,6 +46,7 @@ class RoundingMaker {
     for (std::uint32_t s = 0; s < data_->solids.size(); ++s) judge_shape(s);
     make_creased_solids();
     make_filled_solids();
+    list_plain_creases();
     // A mesh of bevels has each edge of its own.
     const ShortEdges short_edges = keep_networks_ ? ShortEdges::leave_sharp : ShortEdges::skip;
     NetworkBuilder builder(welded_, regions_, kinds_, options_.radius, short_edges);
@@ -248,6 +250,7 @@ class RoundingMaker {
       bands_.insert(bands_.end(), made[i]->bands.begin(), made[i]->bands.end());
       for (const std::uint32_t s : wanted[i]) join(s, wanted[i].front());
       data_->creased.push_back(std::make_unique<const CreasedSolid>(std::move(made[i]->solid)));
+      plain_.push_back({wanted[i].front(), false, std::move(made[i]->plain)});
     }
   }
 
@@ -282,15 +285,30 @@ class RoundingMaker {
     });
     for (std::size_t i = 0; i < wanted.size(); ++i) {
       if (!made[i]) continue;
-      bands_.insert(bands_.end(), made[i]->bands.begin(), made[i]->bands.end());
-      fill(wanted[i], std::move(made[i]->solid));
+      covers_.insert(covers_.end(), made[i]->bands.begin(), made[i]->bands.end());
+      plain_.push_back({wanted[i], true, std::move(made[i]->plain)});
+      fill(wanted[i], std::move(made[i]->solid), plain_.back().creases);
     }
+    bands_.insert(bands_.end(), covers_.begin(), covers_.end());
   }
 
-  void fill(std::uint32_t s, CreasedSolid outside) {
+  // What rays meet along most of the edges of creased and filled solids.
+  void list_plain_creases() {
+    if (plain_.empty()) return;
+    PlainLists lists(mesh_, covers_);
+    for (const SolidCreases& of : plain_) {
+      const Solid& solid = data_->solids[of.solid];
+      lists.add(of.is_fillet ? data_->filled[solid.filled]->outside
+                             : *data_->creased[solid.creased],
+                solid.center, of.creases, of.is_fillet);
+    }
+    lists.put_into(*data_);
+  }
+
+  void fill(std::uint32_t s, CreasedSolid outside, std::span<const PlainCrease> plain) {
     Solid& solid = data_->solids[s];
     solid.filled = std::uint32_t(data_->filled.size());
-    data_->filled.push_back(std::make_unique<const FilledSolid>(std::move(outside)));
+    data_->filled.push_back(std::make_unique<const FilledSolid>(std::move(outside), plain));
     const std::uint64_t edges = concave_edges_of(s);
     filled_edges_ += edges;
     data_->report.rounded_edges += edges;
@@ -543,7 +561,8 @@ class RoundingMaker {
     const auto of = [](const auto& v) { return v.size() * sizeof(v[0]); };
     return of(data_->band_begin) + of(data_->bands) + of(data_->face) + of(data_->faces) +
            of(data_->arcs) + of(data_->nodes) + of(data_->links) + of(data_->solids) +
-           of(data_->fillet_boxes) + of(data_->fillet_parts) +
+           of(data_->fillet_boxes) + of(data_->fillet_parts) + of(data_->plain) +
+           of(data_->plain_begin) + of(data_->plain_on) +
            (data_->tree ? data_->tree->bytes() : 0) + creased_bytes();
   }
 
@@ -556,7 +575,13 @@ class RoundingMaker {
   std::vector<EdgeKind> kinds_;
   std::optional<OutsideMesh> outside_;  // if concave edges are to be rounded, and there are any
   std::vector<std::uint32_t> triangle_begin_, triangles_;
-  std::vector<TriangleBand> bands_;
+  std::vector<TriangleBand> bands_, covers_;  // covers: those of fillets
+  struct SolidCreases {
+    std::uint32_t solid;
+    bool is_fillet;
+    std::vector<PlainCrease> creases;
+  };
+  std::vector<SolidCreases> plain_;
   std::vector<std::uint32_t> walls_;
   bool keep_networks_ = false;
   std::vector<ShellNetwork> networks_;

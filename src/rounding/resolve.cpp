@@ -220,6 +220,24 @@ class CreasedHit {
         inner_(solid.creased == kNone ? nullptr : data.creased[solid.creased].get()),
         filled_(solid.filled == kNone ? nullptr : data.filled[solid.filled].get()) {}
 
+  // Most hits beside edges end here: those beside a plain stretch of a crease. Nothing: resolve() decides.
+  [[nodiscard]] std::optional<Resolution> settle_plainly(const MeshHit& hit) const {
+    for (const std::uint32_t index : plain_creases_on(data_, hit.triangle)) {
+      const PlainCrease& crease = data_.plain[index];
+      const CreasedSolid* const solid = crease.is_fillet ? &filled_->outside : inner_;
+      const bool backwards = entering_ == crease.is_fillet;
+      const Vec3d direction = backwards ? -at_.direction : at_.direction;
+      const std::optional<PlainCrossing> crossing =
+          cross_plainly(crease, *solid, at_.face, {at_.x, direction});
+      if (!crossing) continue;
+      const double along = crossing->t / at_.scale;
+      const double t = backwards ? at_.t - along : at_.t + along;
+      if (crease.is_fillet) return onto_fillet(*crossing, t);
+      return beside_crease(*crossing, t, std::uint32_t(data_.arcs.size()) + index);
+    }
+    return std::nullopt;
+  }
+
   // Nothing: the local network decides.
   [[nodiscard]] std::optional<Resolution> resolve(const Ray& ray) const {
     // From a local rounding's void: the solid is closed, and its inside is not met.
@@ -254,6 +272,28 @@ class CreasedHit {
   }
   static Feature feature_of(const PipeHit& met) {
     return met.at_end ? Feature::corner : Feature::edge;
+  }
+
+  // From outside into a fillet, or from a solid whose convex edges stay sharp out of one.
+  [[nodiscard]] std::optional<Resolution> onto_fillet(const PlainCrossing& crossing,
+                                                      double t) const {
+    const bool leaves_void = !entering_ && (inner_ != nullptr || start_ == RayStart::outside);
+    if (leaves_void || !crossing.normal || t < 0) return std::nullopt;
+    return make(Resolution::Outcome::moved, t, -*crossing.normal, Feature::fillet);
+  }
+
+  // t: where the pipe is met, or the void ends.
+  [[nodiscard]] std::optional<Resolution> beside_crease(const PlainCrossing& crossing, double t,
+                                                        std::uint32_t crossed) const {
+    Resolution out = make(Resolution::Outcome::passed, at_.t, normal_, Feature::face);
+    if (!entering_ && start_ == RayStart::outside) {
+      // It began in the void, or it is not known how it came there.
+      if (t * at_.scale > inner_->tolerance) return std::nullopt;
+      return out;
+    }
+    if (crossing.normal) out = make(Resolution::Outcome::moved, t, *crossing.normal, Feature::edge);
+    if (entering_) out.hit.crossed = crossed;
+    return out;
   }
 
   // From the fillet into the solid, or the other way.
@@ -328,6 +368,28 @@ std::optional<EdgeBlend> blend_of_creased(const Rounding::Data& data, const Roun
   return blend;
 }
 
+// The void beside an arc, between its ends.
+struct VoidPrism {
+  Vec3d p0, axis;
+  double length;
+  Vec3d normal_a, normal_b;
+  std::uint32_t face;
+};
+
+VoidPrism prism_of(const Rounding::Data& data, const Arc& arc) {
+  return {Vec3d(arc.line.p0),
+          Vec3d(arc.line.axis),
+          arc.line.length,
+          Vec3d(data.faces[arc.face_a].normal),
+          Vec3d(data.faces[arc.face_b].normal),
+          arc.face_a};
+}
+
+VoidPrism prism_of(const PlainCrease& crease) {
+  return {crease.p0,       crease.axis,     crease.length,
+          crease.normal_a, crease.normal_b, crease.face_a};
+}
+
 // Where the walk ended.
 void finish(Resolution& out, const std::optional<WalkHit>& met, const FaceHit& at, bool entering) {
   if (!met) {
@@ -385,7 +447,9 @@ Resolution Rounding::resolve(const Ray& ray, const MeshHit& hit, RayStart start)
   }
   const FaceHit at = locate(*data_, ray, hit);
   if (solid.creased != kNone || solid.filled != kNone) {
-    const std::optional<Resolution> found = CreasedHit(*data_, solid, at, start).resolve(ray);
+    const CreasedHit creased(*data_, solid, at, start);
+    std::optional<Resolution> found = creased.settle_plainly(hit);
+    if (!found) found = creased.resolve(ray);
     if (found) return *found;
   }
   out.hit = {at.t, Vec3d(face.normal)};
@@ -425,21 +489,20 @@ Rounding::Exit Rounding::find_exit(std::uint32_t solid_index, const Ray& ray) co
 
 std::optional<Rounding::Exit> Rounding::find_exit_beside(std::uint32_t arc_index, const Ray& ray,
                                                          double start) const {
-  const Arc& arc = data_->arcs[arc_index];
-  const Vec3d rel =
-      ray.origin - data_->solids[data_->faces[arc.face_a].solid].center - Vec3d(arc.line.p0);
+  const auto arcs = std::uint32_t(data_->arcs.size());
+  const VoidPrism prism = arc_index < arcs ? prism_of(*data_, data_->arcs[arc_index])
+                                           : prism_of(data_->plain[arc_index - arcs]);
+  const Vec3d rel = ray.origin - data_->solids[data_->faces[prism.face].solid].center - prism.p0;
   Exit exit{std::numeric_limits<double>::infinity(), 0};
-  for (const std::uint32_t f : {arc.face_a, arc.face_b}) {
-    const Vec3d normal(data_->faces[f].normal);
+  for (const Vec3d normal : {prism.normal_a, prism.normal_b}) {
     const double approach = dot(normal, ray.direction);
     if (approach <= 0) continue;
     const double t = (data_->radius - dot(normal, rel)) / approach;
     if (t < exit.t) exit = {t, approach};
   }
-  const Vec3d axis(arc.line.axis);
-  const double at = dot(axis, rel), speed = dot(axis, ray.direction);
+  const double at = dot(prism.axis, rel), speed = dot(prism.axis, ray.direction);
   const double begin = at + speed * start, end = at + speed * exit.t;
-  const double length = arc.line.length;
+  const double length = prism.length;
   if (!(begin >= 0 && begin <= length && end >= 0 && end <= length)) return std::nullopt;
   return exit;
 }
