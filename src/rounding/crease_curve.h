@@ -37,11 +37,6 @@ void add_crossings(const CreaseCurve& curve, Vec3d normal, double alpha,
 
 // The nearest point of the curve to x, by its parameter.
 double nearest_parameter(const CreaseCurve& curve, Vec3d x);
-// The same for an arc whose ends are at hand, quickly where it is near `guess`.
-struct ArcEnds {
-  Vec3d p0, p1;
-};
-double nearest_parameter(const CreaseCurve& curve, const ArcEnds& ends, Vec3d x, double guess);
 
 // Lines and ellipses have their whole extent, or [−extent, extent].
 std::optional<CreaseCurve> face_face_crease(const Plane& a, const Plane& b, double radius,

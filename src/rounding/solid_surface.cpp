@@ -20,6 +20,9 @@ std::vector<Box> boxes_of(const std::vector<SurfaceTriangle>& triangles, double 
   return boxes;
 }
 
+// Of squared distances, whatever rounding does.
+constexpr double kSurelyBeyond = 1 + 1e-9;
+
 // On which side of the line a→b the ray passes; the exact negative for b→a, so that no ray slips between triangles.
 double side_of(Vec3d origin, Vec3d direction, Vec3d a, Vec3d b) {
   if (b.x < a.x || (b.x == a.x && (b.y < a.y || (b.y == a.y && b.z < a.z)))) {
@@ -72,6 +75,9 @@ bool SolidSurface::is_near(Vec3d x, double distance, std::uint32_t but_region) c
   bool found = false;
   for_each_near(x - Vec3d(distance), x + Vec3d(distance), [&](const SurfaceTriangle& t) {
     if (found || t.region == but_region) return;
+    const Vec3d normal = cross(t.p1 - t.p0, t.p2 - t.p0);
+    const double above = dot(normal, x - t.p0);
+    if (above * above > distance * distance * length_squared(normal) * kSurelyBeyond) return;
     found = length_squared(x - nearest_on_triangle(x, t)) < distance * distance &&
             !is_joined(but_region, t.region);
   });
@@ -85,11 +91,14 @@ SolidSurface::Exit SolidSurface::first_exit(Vec3d origin, Vec3d direction, doubl
     const Vec3d normal = cross(t.p1 - t.p0, t.p2 - t.p0);
     const double across = dot(normal, direction);
     if (!(across > 0)) return;
+    // Beyond what was found.
+    const double ahead = dot(normal, t.p0 - origin);
+    if (!(ahead > after * across && ahead < exit.t * across)) return;
     const double w0 = side_of(origin, direction, t.p1, t.p2);
     const double w1 = side_of(origin, direction, t.p2, t.p0);
     const double w2 = side_of(origin, direction, t.p0, t.p1);
     if (w0 < 0 || w1 < 0 || w2 < 0) return;
-    const double at = dot(normal, t.p0 - origin) / across;
+    const double at = ahead / across;
     if (at > after && at < exit.t) exit = {at, t.region};
   });
   return exit;
