@@ -74,8 +74,7 @@ struct RoundedHit {
   Vec3d normal;  // unit, outward from the solid
   Feature feature = Feature::face;
   std::uint32_t arc = ~std::uint32_t{0};  // of an edge, for blend_of()
-  // The arc between whose ends the ray crossed the void, or entered it to pass, or, counted on from the arcs, the plain
-  // crease; ~0: it came by a corner.
+  // The arc between whose ends the ray crossed the void, or entered it to pass; ~0: it came by a corner.
   std::uint32_t crossed = ~std::uint32_t{0};
   // The solid of a hit on an edge or corner, where it has no arcs, for blend_of().
   std::uint32_t solid = ~std::uint32_t{0};

@@ -31,7 +31,9 @@ class Fillets {
 
   [[nodiscard]] std::size_t part_count() const { return parts_.size(); }
   // Holds the fillet's surface along one part.
-  [[nodiscard]] Box box_of(std::uint32_t part) const;
+  [[nodiscard]] Box box_of(std::uint32_t part) const {
+    return {parts_[part].low, parts_[part].high, part};
+  }
 
   // Where a ray crosses one part's surface of the fillets, within ]t_min, t_max[: the first place of those wanted.
   struct Wanted {
@@ -55,8 +57,10 @@ class Fillets {
     Vec3d side_a, side_b;
     // Of the curve, where no other pipe is near.
     double plain0 = 0, plain1 = 0;
+    Vec3d low{}, high{};  // see box_of()
   };
 
+  void set_box(Part& part) const;
   [[nodiscard]] Contacts contacts_at(Vec3d c) const;
   [[nodiscard]] bool begins_at(const Part& part, const PipePlace& place) const;
 

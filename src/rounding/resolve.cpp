@@ -233,7 +233,7 @@ class CreasedHit {
       const double along = crossing->t / at_.scale;
       const double t = backwards ? at_.t - along : at_.t + along;
       if (crease.is_fillet) return onto_fillet(*crossing, t);
-      return beside_crease(*crossing, t, std::uint32_t(data_.arcs.size()) + index);
+      return beside_crease(*crossing, t);
     }
     return std::nullopt;
   }
@@ -278,22 +278,21 @@ class CreasedHit {
   [[nodiscard]] std::optional<Resolution> onto_fillet(const PlainCrossing& crossing,
                                                       double t) const {
     const bool leaves_void = !entering_ && (inner_ != nullptr || start_ == RayStart::outside);
-    if (leaves_void || !crossing.normal || t < 0) return std::nullopt;
+    const bool is_ahead = t * at_.scale > filled_->outside.tolerance;
+    if (leaves_void || !is_ahead || !crossing.normal) return std::nullopt;
     return make(Resolution::Outcome::moved, t, -*crossing.normal, Feature::fillet);
   }
 
   // t: where the pipe is met, or the void ends.
-  [[nodiscard]] std::optional<Resolution> beside_crease(const PlainCrossing& crossing, double t,
-                                                        std::uint32_t crossed) const {
-    Resolution out = make(Resolution::Outcome::passed, at_.t, normal_, Feature::face);
+  [[nodiscard]] std::optional<Resolution> beside_crease(const PlainCrossing& crossing,
+                                                        double t) const {
     if (!entering_ && start_ == RayStart::outside) {
       // It began in the void, or it is not known how it came there.
       if (t * at_.scale > inner_->tolerance) return std::nullopt;
-      return out;
+      return make(Resolution::Outcome::passed, at_.t, normal_, Feature::face);
     }
-    if (crossing.normal) out = make(Resolution::Outcome::moved, t, *crossing.normal, Feature::edge);
-    if (entering_) out.hit.crossed = crossed;
-    return out;
+    if (crossing.normal) return make(Resolution::Outcome::moved, t, *crossing.normal, Feature::edge);
+    return make(Resolution::Outcome::passed, at_.t, normal_, Feature::face);
   }
 
   // From the fillet into the solid, or the other way.
@@ -366,28 +365,6 @@ std::optional<EdgeBlend> blend_of_creased(const Rounding::Data& data, const Roun
     side->point += solid.center;
   }
   return blend;
-}
-
-// The void beside an arc, between its ends.
-struct VoidPrism {
-  Vec3d p0, axis;
-  double length;
-  Vec3d normal_a, normal_b;
-  std::uint32_t face;
-};
-
-VoidPrism prism_of(const Rounding::Data& data, const Arc& arc) {
-  return {Vec3d(arc.line.p0),
-          Vec3d(arc.line.axis),
-          arc.line.length,
-          Vec3d(data.faces[arc.face_a].normal),
-          Vec3d(data.faces[arc.face_b].normal),
-          arc.face_a};
-}
-
-VoidPrism prism_of(const PlainCrease& crease) {
-  return {crease.p0,       crease.axis,     crease.length,
-          crease.normal_a, crease.normal_b, crease.face_a};
 }
 
 // Where the walk ended.
@@ -489,20 +466,21 @@ Rounding::Exit Rounding::find_exit(std::uint32_t solid_index, const Ray& ray) co
 
 std::optional<Rounding::Exit> Rounding::find_exit_beside(std::uint32_t arc_index, const Ray& ray,
                                                          double start) const {
-  const auto arcs = std::uint32_t(data_->arcs.size());
-  const VoidPrism prism = arc_index < arcs ? prism_of(*data_, data_->arcs[arc_index])
-                                           : prism_of(data_->plain[arc_index - arcs]);
-  const Vec3d rel = ray.origin - data_->solids[data_->faces[prism.face].solid].center - prism.p0;
+  const Arc& arc = data_->arcs[arc_index];
+  const Vec3d rel =
+      ray.origin - data_->solids[data_->faces[arc.face_a].solid].center - Vec3d(arc.line.p0);
   Exit exit{std::numeric_limits<double>::infinity(), 0};
-  for (const Vec3d normal : {prism.normal_a, prism.normal_b}) {
+  for (const std::uint32_t f : {arc.face_a, arc.face_b}) {
+    const Vec3d normal(data_->faces[f].normal);
     const double approach = dot(normal, ray.direction);
     if (approach <= 0) continue;
     const double t = (data_->radius - dot(normal, rel)) / approach;
     if (t < exit.t) exit = {t, approach};
   }
-  const double at = dot(prism.axis, rel), speed = dot(prism.axis, ray.direction);
+  const Vec3d axis(arc.line.axis);
+  const double at = dot(axis, rel), speed = dot(axis, ray.direction);
   const double begin = at + speed * start, end = at + speed * exit.t;
-  const double length = prism.length;
+  const double length = arc.line.length;
   if (!(begin >= 0 && begin <= length && end >= 0 && end <= length)) return std::nullopt;
   return exit;
 }

@@ -20,9 +20,6 @@ std::vector<Box> boxes_of(const std::vector<SurfaceTriangle>& triangles, double 
   return boxes;
 }
 
-// Of squared distances, whatever rounding does.
-constexpr double kSurelyBeyond = 1 + 1e-9;
-
 // On which side of the line a→b the ray passes; the exact negative for b→a, so that no ray slips between triangles.
 double side_of(Vec3d origin, Vec3d direction, Vec3d a, Vec3d b) {
   if (b.x < a.x || (b.x == a.x && (b.y < a.y || (b.y == a.y && b.z < a.z)))) {
@@ -75,9 +72,7 @@ bool SolidSurface::is_near(Vec3d x, double distance, std::uint32_t but_region) c
   bool found = false;
   for_each_near(x - Vec3d(distance), x + Vec3d(distance), [&](const SurfaceTriangle& t) {
     if (found || t.region == but_region) return;
-    const Vec3d normal = cross(t.p1 - t.p0, t.p2 - t.p0);
-    const double above = dot(normal, x - t.p0);
-    if (above * above > distance * distance * length_squared(normal) * kSurelyBeyond) return;
+    if (is_plainly_beyond(x, t, distance)) return;
     found = length_squared(x - nearest_on_triangle(x, t)) < distance * distance &&
             !is_joined(but_region, t.region);
   });
