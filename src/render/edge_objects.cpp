@@ -153,6 +153,9 @@ class CreasedEdge {
   }
 
   [[nodiscard]] bool is_one() const { return solid_ != nullptr; }
+  [[nodiscard]] bool is_rounded() const {
+    return convex_ && !solid_->is_left_sharp(face0_, face1_, (kept_.p0 + kept_.p1) * 0.5);
+  }
   [[nodiscard]] bool is_convex() const { return convex_; }
   // In the mesh's space; nothing: all of it is.
   [[nodiscard]] std::optional<std::vector<EdgeEnds>> find_kept() const {
@@ -340,8 +343,10 @@ void EdgeObjects::find_rounded(const PreparedScene& prepared, ObjectEdges& objec
       continue;
     }
     if (const CreasedEdge creased(data, rounding_from_object, mesh, edge); creased.is_one()) {
-      if (creased.is_convex()) {
+      if (creased.is_rounded()) {
         out[e] = if_rounded;
+      } else if (creased.is_convex()) {
+        continue;
       } else if (std::optional<std::vector<EdgeEnds>> parts = creased.find_kept()) {
         out[e] = RoundedEdge::partly;
         object.kept.emplace(e, std::move(*parts));

@@ -305,7 +305,8 @@ class NeighborFinder {
     const Rounding::Data& data = g.rounding->data();
     const double enough = kVoidMargin * data.solids[data.faces[arc.face_a].solid].size;
     const Vec3d na(data.faces[arc.face_a].normal), nb(data.faces[arc.face_b].normal);
-    const double r = data.radius, length_of_arc = arc.line.length;
+    const double r = data.solids[data.faces[arc.face_a].solid].radius;
+    const double length_of_arc = arc.line.length;
     const double sin_alpha = length(na + nb) / 2;
     if (sin_alpha < kThinEdge) return {-INFINITY, -INFINITY};
     const double reach = r / sin_alpha;

@@ -117,30 +117,6 @@ double nearest_parameter(const CreaseCurve& curve, Vec3d x) {
   return best;
 }
 
-double nearest_parameter(const CreaseCurve& curve, const ArcEnds& ends, Vec3d x, double guess) {
-  constexpr int kMostSteps = 6;
-  constexpr double kConverged = 1e-12;
-  const Vec3d offset = x - curve.center;
-  const double p = dot(offset, curve.a), q = dot(offset, curve.b);
-  const double difference = length_squared(curve.b) - length_squared(curve.a);
-  double u = guess;
-  for (int k = 0; k < kMostSteps; ++k) {
-    const double c = std::cos(u), s = std::sin(u);
-    const double slope = difference * s * c + p * s - q * c;
-    const double bend = difference * (c * c - s * s) + p * c + q * s;
-    if (!(bend > 0)) break;
-    const double next = std::clamp(u - slope / bend, curve.u0, curve.u1);
-    if (std::abs(next - u) < kConverged) {
-      // Another minimum may be at an end.
-      const double here = length_squared(curve.at(next) - x);
-      if (here > length_squared(ends.p0 - x) || here > length_squared(ends.p1 - x)) break;
-      return next;
-    }
-    u = next;
-  }
-  return nearest_parameter(curve, x);
-}
-
 // Newton's method from the angle about its centre.
 double distance_to(const CreaseCurve& part, Vec3d x) {
   if (part.is_line) return length(x - part.at(nearest_parameter(part, x)));

@@ -38,11 +38,6 @@ void add_crossings(const CreaseCurve& curve, Vec3d normal, double alpha,
 
 // The nearest point of the curve to x, by its parameter.
 double nearest_parameter(const CreaseCurve& curve, Vec3d x);
-// The same for an arc whose ends are at hand, quickly where it is near `guess`.
-struct ArcEnds {
-  Vec3d p0, p1;
-};
-double nearest_parameter(const CreaseCurve& curve, const ArcEnds& ends, Vec3d x, double guess);
 
 // The distance from a segment, or from a short part of an arc.
 double distance_to(const CreaseCurve& part, Vec3d x);

@@ -10,59 +10,82 @@ namespace {
 // An arc's part turns by this much at most.
 constexpr double kPartAngle = radians(20);
 
+// Squared sine below which a ray goes along an axis.
+constexpr double kAlong = 1e-22;
+
 struct Span {
   double t0, t1;
 };
 
+struct Segment {
+  Vec3d p0, p1, axis;  // axis: unit, or 0 if it has no extent
+  double extent;
+};
+
 // Where a line is within r of a segment: the two are convex.
-std::optional<Span> meet_capsule(Vec3d origin, Vec3d direction, Vec3d p0, Vec3d p1, double r) {
+std::optional<Span> meet_capsule(Vec3d origin, Vec3d direction, const Segment& segment, double r) {
+  const Vec3d& axis = segment.axis;
+  const Vec3d m = origin - segment.p0;
+  const double dd = length_squared(direction);
+  const Vec3d normal = cross(direction, axis);
+  const double apart = dot(m, normal), a = length_squared(normal);
+  const bool is_along = !(a > kAlong * dd);
+  // Most lines pass at a distance.
+  if (!is_along && apart * apart > r * r * a * (1 + 1e-9)) return std::nullopt;
   std::optional<Span> all;
   const auto add = [&](double t0, double t1) {
     all = all ? Span{std::min(all->t0, t0), std::max(all->t1, t1)} : Span{t0, t1};
   };
-  const double dd = length_squared(direction);
-  const auto add_ball = [&](Vec3d center) {
-    const Vec3d m = origin - center;
-    const double b = dot(m, direction) / dd;
-    const double d = length_squared(m - direction * b);
-    if (d > r * r) return;
+  if (!is_along) {  // else what it meets are the balls
+    const double s0 = dot(m, axis), speed = dot(direction, axis);
+    const Vec3d m_across = m - axis * s0;
+    const Vec3d d_across = direction - axis * speed;
+    const double b = dot(m_across, d_across) / a;
+    const double c = length_squared(m_across - d_across * b);
+    if (c > r * r) return std::nullopt;
+    const double half = std::sqrt((r * r - c) / a);
+    int sides = 0;
+    for (const double t : {-b - half, -b + half}) {
+      const double at = s0 + speed * t;
+      if (at < 0 || at > segment.extent) continue;
+      add(t, t);
+      ++sides;
+    }
+    if (sides == 2) return all;
+  }
+  for (const Vec3d center : {segment.p0, segment.p1}) {
+    const Vec3d from = origin - center;
+    const double b = dot(from, direction) / dd;
+    const double d = length_squared(from - direction * b);
+    if (d > r * r) continue;
     const double half = std::sqrt((r * r - d) / dd);
     add(-b - half, -b + half);
-  };
-  add_ball(p0);
-  add_ball(p1);
-  const Vec3d along = p1 - p0;
-  const double extent = length(along);
-  if (!(extent > 0)) return all;
-  const Vec3d axis = along / extent;
-  const Vec3d m = origin - p0;
-  const Vec3d m_across = m - axis * dot(m, axis);
-  const double speed = dot(direction, axis);
-  const Vec3d d_across = direction - axis * speed;
-  const double a = length_squared(d_across);
-  if (!(a > 1e-24 * dd)) return all;  // along the axis: what it meets are the balls
-  const double b = dot(m_across, d_across) / a;
-  const double c = length_squared(m_across - d_across * b);
-  if (c > r * r) return all;
-  const double half = std::sqrt((r * r - c) / a);
-  for (const double t : {-b - half, -b + half}) {
-    const double at = dot(m, axis) + speed * t;
-    if (at >= 0 && at <= extent) add(t, t);
   }
   return all;
 }
 
-ArcEnds ends_of(const CreaseCurve& curve) {
-  return {curve.at(curve.u0), curve.at(curve.u1)};
-}
-
 }  // namespace
+
+CreasePipes::Part CreasePipes::make_part(const CreaseCurve& curve) {
+  Part part;
+  part.curve = curve;
+  part.p0 = curve.at(curve.u0);
+  part.p1 = curve.at(curve.u1);
+  part.length = length(part.p1 - part.p0);
+  if (part.length > 0) part.axis = (part.p1 - part.p0) / part.length;
+  if (curve.is_line) return part;
+  // An affine image of a circle's arc.
+  part.bulge = (1 - std::cos(0.5 * (curve.u1 - curve.u0))) *
+               std::sqrt(length_squared(curve.a) + length_squared(curve.b));
+  part.arc = ShortArc(curve);
+  return part;
+}
 
 std::vector<CreasePipes::Part> CreasePipes::parts_of(std::span<const CreaseCurve> creases) {
   std::vector<Part> parts;
   for (const CreaseCurve& whole : creases) {
     if (whole.is_line) {
-      parts.push_back({whole, 0, ends_of(whole)});
+      parts.push_back(make_part(whole));
       continue;
     }
     const int count = std::max(1, int(std::ceil((whole.u1 - whole.u0) / kPartAngle)));
@@ -71,10 +94,7 @@ std::vector<CreasePipes::Part> CreasePipes::parts_of(std::span<const CreaseCurve
       CreaseCurve part = whole;
       part.u0 = whole.u0 + step * k;
       part.u1 = k + 1 == count ? whole.u1 : part.u0 + step;
-      // An affine image of a circle's arc.
-      const double bulge =
-          (1 - std::cos(0.5 * step)) * std::sqrt(length_squared(whole.a) + length_squared(whole.b));
-      parts.push_back({part, bulge, ends_of(part)});
+      parts.push_back(make_part(part));
     }
   }
   return parts;
@@ -83,9 +103,9 @@ std::vector<CreasePipes::Part> CreasePipes::parts_of(std::span<const CreaseCurve
 std::vector<Box> CreasePipes::boxes_of(std::span<const Part> parts, double radius) {
   std::vector<Box> boxes;
   for (std::uint32_t i = 0; i < parts.size(); ++i) {
-    const auto [p0, p1] = parts[i].ends;
-    const Vec3d reach(radius + parts[i].bulge);
-    boxes.push_back({min(p0, p1) - reach, max(p0, p1) + reach, i});
+    const Part& part = parts[i];
+    const Vec3d reach(radius + part.bulge);
+    boxes.push_back({min(part.p0, part.p1) - reach, max(part.p0, part.p1) + reach, i});
   }
   return boxes;
 }
@@ -96,22 +116,45 @@ CreasePipes::CreasePipes(std::vector<CreaseCurve> creases, double radius)
       parts_(parts_of(creases_)),
       tree_(boxes_of(parts_, radius)) {}
 
-// From one t of a ray towards another, either way: where it first comes within r of the curve.
-std::optional<double> CreasePipes::step_to_arc(const Part& part, Vec3d origin, Vec3d direction,
-                                               double from, double to) const {
-  const CreaseCurve& curve = part.curve;
+CreasePipes::Foot CreasePipes::foot_on(const Part& part, Vec3d x) {
+  if (!part.curve.is_line) {
+    const Turn turn = part.arc.nearest(x, {});
+    return {part.arc.at(turn), part.arc.parameter(turn)};
+  }
+  const double u = nearest_parameter(part.curve, x);
+  return {part.curve.at(u), u};
+}
+
+// From one t of a ray towards another, either way: where it first comes within r of the arc.
+std::optional<CreasePipes::ArcEntry> CreasePipes::step_to_arc(const ShortArc& arc, const Ray& ray,
+                                                              double from, double to) const {
   constexpr int kMostSteps = 200;
+  constexpr double kSafePart = 0.5;  // of the longest safe step
   const double way = to < from ? -1 : 1;
-  const double speed = way * length(direction);
-  double t = from;
-  double u = 0.5 * (curve.u0 + curve.u1);
+  const double unit = way / length(ray.direction);
+  const Vec3d direction = ray.direction * unit;
+  double t = from, before = from;
+  double left_before = 0;
+  Turn turn;
   for (int step = 0; step <= kMostSteps; ++step) {
-    const Vec3d x = origin + direction * t;
-    u = nearest_parameter(curve, part.ends, x, u);
-    const double left = length(x - curve.at(u)) - r_;
-    if (left <= 1e-9 * r_) return t;
-    t += left / speed;
-    if ((t - to) * way > 0) break;
+    const Vec3d x = ray.origin + ray.direction * t;
+    turn = arc.nearest(x, turn);
+    const Vec3d away = x - arc.at(turn);
+    const double distance = length(away), left = distance - r_;
+    if (std::abs(left) <= 1e-9 * r_ || (left < 0 && step == 0)) return ArcEntry{t, turn};
+    if (left < 0) {
+      // Too far, as the arc bends towards the ray: back along the chord.
+      t = before + (t - before) * (left_before / (left_before - left));
+      continue;
+    }
+    before = t;
+    left_before = left;
+    const double fall = -dot(away, direction) / distance;
+    const double safe = std::max(left, kSafePart * r_ * fall);
+    t += unit * (fall > 0 ? std::min(left / fall, safe) : left);
+    if ((t - to) * way <= 0) continue;
+    if (before == to) break;
+    t = to;
   }
   return std::nullopt;
 }
@@ -120,23 +163,27 @@ std::optional<PipeHit> CreasePipes::first_entry(Vec3d origin, Vec3d direction, d
   std::optional<PipeHit> best;
   tree_.for_each_along(origin, direction, 0, end, [&](std::uint32_t i) {
     const Part& part = parts_[i];
-    const CreaseCurve& curve = part.curve;
-    const auto [p0, p1] = part.ends;
-    const std::optional<Span> span = meet_capsule(origin, direction, p0, p1, r_ + part.bulge);
+    const std::optional<Span> span = meet_capsule(
+        origin, direction, {part.p0, part.p1, part.axis, part.length}, r_ + part.bulge);
     if (!span || span->t1 < 0 || span->t0 > end) return;
     double t = std::max(span->t0, 0.0);
-    if (!curve.is_line) {
-      const std::optional<double> met =
-          step_to_arc(part, origin, direction, t, std::min(span->t1, end));
+    Vec3d foot;
+    bool is_inner = false;
+    if (part.curve.is_line) {
+      const double along = dot(origin + direction * t - part.p0, part.axis);
+      foot = part.p0 + part.axis * std::clamp(along, 0.0, part.length);
+      is_inner = along > 0 && along < part.length;
+    } else {
+      const std::optional<ArcEntry> met =
+          step_to_arc(part.arc, {origin, direction}, t, std::min(span->t1, end));
       if (!met) return;
-      t = *met;
+      t = met->t;
+      foot = part.arc.at(met->turn);
     }
     if (t > end) return;
-    const double u = nearest_parameter(curve, origin + direction * t);
-    const Vec3d normal = normalize(origin + direction * t - curve.at(u));
+    const Vec3d normal = normalize(origin + direction * t - foot);
     if (dot(normal, direction) >= 0) return;
     end = t;
-    const bool is_inner = curve.is_line && u > curve.u0 && u < curve.u1;
     best = PipeHit{t, normal, !is_inner};
   });
   return best;
@@ -145,29 +192,27 @@ std::optional<PipeHit> CreasePipes::first_entry(Vec3d origin, Vec3d direction, d
 std::optional<PipeSpan> CreasePipes::span_of(std::uint32_t index, Vec3d origin,
                                              Vec3d direction) const {
   const Part& part = parts_[index];
-  const CreaseCurve& curve = part.curve;
   const std::optional<Span> span =
-      meet_capsule(origin, direction, part.ends.p0, part.ends.p1, r_ + part.bulge);
+      meet_capsule(origin, direction, {part.p0, part.p1, part.axis, part.length}, r_ + part.bulge);
   if (!span) return std::nullopt;
   const auto place_at = [&](double t) {
     const Vec3d x = origin + direction * t;
-    const double u = nearest_parameter(curve, x);
-    return PipePlace{t, u, normalize(x - curve.at(u))};
+    const Foot foot = foot_on(part, x);
+    return PipePlace{t, foot.u, normalize(x - foot.point)};
   };
-  if (curve.is_line) return PipeSpan{place_at(span->t0), place_at(span->t1)};
-  const std::optional<double> t0 = step_to_arc(part, origin, direction, span->t0, span->t1);
-  if (!t0) return std::nullopt;
-  const std::optional<double> t1 = step_to_arc(part, origin, direction, span->t1, *t0);
-  if (!t1) return std::nullopt;
-  return PipeSpan{place_at(*t0), place_at(*t1)};
+  if (part.curve.is_line) return PipeSpan{place_at(span->t0), place_at(span->t1)};
+  const Ray ray{origin, direction};
+  const std::optional<ArcEntry> in = step_to_arc(part.arc, ray, span->t0, span->t1);
+  if (!in) return std::nullopt;
+  const std::optional<ArcEntry> out = step_to_arc(part.arc, ray, span->t1, in->t);
+  if (!out) return std::nullopt;
+  return PipeSpan{place_at(in->t), place_at(out->t)};
 }
 
 bool CreasePipes::holds(Vec3d x, double distance) const {
   bool found = false;
   tree_.for_each_near(x, x, [&](std::uint32_t i) {
-    if (found) return;
-    const CreaseCurve& curve = parts_[i].curve;
-    found = length_squared(x - curve.at(nearest_parameter(curve, x))) < distance * distance;
+    found = found || length_squared(x - foot_on(parts_[i], x).point) < distance * distance;
   });
   return found;
 }

@@ -1,10 +1,11 @@
 // crease_pipes.h — balls of the radius along creases, as a ray meets them
 // What       The rounded surface that is not of the sharp solid is the boundary of the balls around all points of its
 //            creases. A ray that comes from where none of these balls are meets it where it first comes within r of a
-//            crease: of a segment by a quadratic equation, of an arc of an ellipse by steps of the distance that is
-//            left within the capsule around its chord.
+//            crease: of a segment by a quadratic equation, of an arc of an ellipse, within the capsule around its
+//            chord, by Newton's steps of the distance that is left.
 // In / Out   coordinates relative to the solid's centre; directions of any length
-// Source     for the steps: J. C. Hart, "Sphere Tracing" (1996)
+// Source     J. C. Hart, "Sphere Tracing" (1996): a step of the distance is safe. So is one of Newton's of up to r
+//            times the slope, as the second derivative of a distance is at most its inverse: until there it falls.
 #pragma once
 
 #include <cstdint>
@@ -14,6 +15,7 @@
 
 #include "rounding/box_tree.h"
 #include "rounding/crease_curve.h"
+#include "rounding/short_arc.h"
 
 namespace arris {
 
@@ -68,15 +70,29 @@ class CreasePipes {
   // A segment of a line, or a short part of an arc.
   struct Part {
     CreaseCurve curve;
-    double bulge;  // of the arc above its chord
-    ArcEnds ends;  // of a segment, too
+    double bulge = 0;  // of the arc above its chord
+    Vec3d p0, p1;      // ends of the chord
+    Vec3d axis;        // unit, along the chord, or 0
+    double length = 0;
+    ShortArc arc;  // if it is no segment
+  };
+  struct Foot {
+    Vec3d point;
+    double u = 0;
+  };
+  struct ArcEntry {
+    double t;
+    Turn turn;
   };
 
+  static Part make_part(const CreaseCurve& curve);
   static std::vector<Part> parts_of(std::span<const CreaseCurve> creases);
   static std::vector<Box> boxes_of(std::span<const Part> parts, double radius);
 
-  [[nodiscard]] std::optional<double> step_to_arc(const Part& part, Vec3d origin, Vec3d direction,
-                                                  double from, double to) const;
+  // The nearest place of a part to x.
+  [[nodiscard]] static Foot foot_on(const Part& part, Vec3d x);
+  [[nodiscard]] std::optional<ArcEntry> step_to_arc(const ShortArc& arc, const Ray& ray,
+                                                    double from, double to) const;
 
   std::vector<CreaseCurve> creases_;
   double r_;

@@ -104,7 +104,8 @@ bool is_same(const DepthAtCorners& a, const DepthAtCorners& b, double tolerance)
 }  // namespace
 
 bool CreasedSolid::is_kept(Vec3d x, Vec3d normal, std::uint32_t region) const {
-  return !surface.is_near(x - normal * radius, radius - tolerance, region);
+  const double r = field.at(x);
+  return r <= tolerance || !surface.is_near(x - normal * r, r - tolerance, region);
 }
 
 VoidCrossing CreasedSolid::cross_void(Vec3d x, Vec3d direction) const {
@@ -147,9 +148,10 @@ bool CreasedSolid::is_beneath(Vec3d x) const {
     region = t.region;
   });
   if (nearest >= radius) return true;
-  if (nearest < kOnSurface * radius) return false;
-  const Vec3d center = foot + (x - foot) * (radius / nearest);
-  return !surface.is_near(center, radius - tolerance, region);
+  const double r = region == kNone ? radius : field.at(foot);
+  if (nearest < kOnSurface * radius || r <= tolerance) return false;
+  const Vec3d center = foot + (x - foot) * (r / nearest);
+  return !surface.is_near(center, r - tolerance, region);
 }
 
 bool CreasedSolid::is_through_material(Vec3d x, std::uint32_t region, Vec3d direction, double end,

@@ -17,6 +17,7 @@
 #include "rounding/crease_pipes.h"
 #include "rounding/crease_shape.h"
 #include "rounding/creases.h"
+#include "rounding/radius_field.h"
 #include "rounding/solid_surface.h"
 
 namespace arris {
@@ -30,7 +31,8 @@ struct VoidCrossing {
 struct CreasedSolid {
   SolidSurface surface;
   CreasePipes pipes;
-  double radius = 0;
+  RadiusField field{0};
+  double radius = 0;     // the largest
   double tolerance = 0;  // crease_tolerance()
   std::vector<std::uint32_t>
       loose;  // regions with edges that stay sharp though they should not; sorted
@@ -41,6 +43,10 @@ struct CreasedSolid {
   [[nodiscard]] bool is_kept(Vec3d x, Vec3d normal, std::uint32_t region) const;
   // From a point of the void, or of the sharp surface above it, on along a ray within the sharp solid.
   [[nodiscard]] VoidCrossing cross_void(Vec3d x, Vec3d direction) const;
+  // Whether the convex edge of two faces is, with its middle.
+  [[nodiscard]] bool is_left_sharp(std::uint32_t face, std::uint32_t other, Vec3d middle) const {
+    return surface.is_thin(face, other) || field.at(middle) <= tolerance;
+  }
   // The distance from a crease below which a point is beneath the rounded surface.
   [[nodiscard]] double least_distance() const;
   // Whether a point of the solid lies beneath the rounded surface, by more than what rays are computed to.
@@ -52,7 +58,9 @@ struct CreasedSolid {
   // Of a place on a pipe of a curved solid, with its normal: the two faces that the ball there touches and between
   // which the normal lies. Nothing: there are no such two. Points are relative to the centre, triangles the mesh's.
   [[nodiscard]] std::optional<EdgeBlend> blend_at(Vec3d x, Vec3d normal) const;
-  [[nodiscard]] std::size_t bytes() const { return surface.bytes() + pipes.bytes(); }
+  [[nodiscard]] std::size_t bytes() const {
+    return surface.bytes() + pipes.bytes() + field.bytes();
+  }
 
   struct MadeShape {
     std::once_flag once;

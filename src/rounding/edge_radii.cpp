@@ -72,7 +72,8 @@ class RadiusFinder {
   [[nodiscard]] bool is_beside(const std::array<Vec3d, 2>& segment, Vec3d p) const {
     const Vec3d along = segment[1] - segment[0];
     const double squared = length_squared(along);
-    const double part = squared > 0 ? std::clamp(dot(p - segment[0], along) / squared, 0.0, 1.0) : 0;
+    const double part =
+        squared > 0 ? std::clamp(dot(p - segment[0], along) / squared, 0.0, 1.0) : 0;
     return length(p - segment[0] - along * part) <= slack_;
   }
 

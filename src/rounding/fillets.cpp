@@ -33,14 +33,21 @@ bool is_between(Vec3d n, Vec3d a, Vec3d b, Vec3d c) {
 
 }  // namespace
 
-Fillets::Fillets(const CreasedSolid& outside) : outside_(&outside) {
+Fillets::Fillets(const CreasedSolid& outside, std::span<const PlainCrease> plain)
+    : outside_(&outside) {
   for (std::uint32_t i = 0; i < outside.pipes.part_count(); ++i) {
     const CreaseCurve& curve = outside.pipes.curve_of(i);
     const Contacts contacts = contacts_at(curve.at(0.5 * (curve.u0 + curve.u1)));
     // Around a corner the balls touch nothing else: the seam of two offsets, not a crease.
     if (contacts.count < 2) continue;
-    parts_.push_back(
-        {i, curve.is_line && contacts.count == 2, contacts.toward[0], contacts.toward[1]});
+    Part part{i, curve.is_line && contacts.count == 2, contacts.toward[0], contacts.toward[1]};
+    while (!plain.empty() && plain.front().part < i) plain = plain.subspan(1);
+    if (!plain.empty() && plain.front().part == i) {
+      part.plain0 = dot(plain.front().axis, plain.front().p0 - curve.center);
+      part.plain1 = part.plain0 + plain.front().length;
+    }
+    set_box(part);
+    parts_.push_back(part);
   }
 }
 
@@ -50,6 +57,7 @@ Fillets::Contacts Fillets::contacts_at(Vec3d c) const {
   // What lies within the tolerance of where a ball touches a plane is one contact.
   const double same = 16 * outside_->tolerance / outside_->radius;
   outside_->surface.for_each_near(c - Vec3d(most), c + Vec3d(most), [&](const SurfaceTriangle& t) {
+    if (is_plainly_beyond(c, t, most)) return;
     const Vec3d foot = nearest_on_triangle(c, t) - c;
     if (length_squared(foot) > most * most || contacts.count == kMostContacts) return;
     const Vec3d toward = normalize(foot);
@@ -61,33 +69,35 @@ Fillets::Contacts Fillets::contacts_at(Vec3d c) const {
   return contacts;
 }
 
-Box Fillets::box_of(std::uint32_t part) const {
-  const std::uint32_t pipe = parts_[part].pipe;
-  const CreaseCurve& curve = outside_->pipes.curve_of(pipe);
+void Fillets::set_box(Part& part) const {
+  const CreaseCurve& curve = outside_->pipes.curve_of(part.pipe);
   const double r = outside_->radius;
-  Box box{Vec3d(INFINITY), Vec3d(-INFINITY), part};
+  Vec3d low(INFINITY), high(-INFINITY);
   // Between contacts the surface rises above their chord.
   double least_cosine = 1;
   for (const double u : {curve.u0, 0.5 * (curve.u0 + curve.u1), curve.u1}) {
     const Contacts contacts = contacts_at(curve.at(u));
     for (std::size_t i = 0; i < contacts.count; ++i) {
       const Vec3d p = curve.at(u) + contacts.toward[i] * r;
-      box.low = min(box.low, p);
-      box.high = max(box.high, p);
+      low = min(low, p);
+      high = max(high, p);
       for (std::size_t j = 0; j < i; ++j) {
         least_cosine = std::min(least_cosine, dot(contacts.toward[i], contacts.toward[j]));
       }
     }
   }
   const double half_angle = 0.5 * std::acos(std::clamp(least_cosine, -1.0, 1.0));
-  const Vec3d rise(r * (1 - std::cos(half_angle)) + 2 * outside_->pipes.bulge_of(part) +
+  const Vec3d rise(r * (1 - std::cos(half_angle)) + 2 * outside_->pipes.bulge_of(part.pipe) +
                    kOnBall * r);
-  return {box.low - rise, box.high + rise, part};
+  part.low = low - rise;
+  part.high = high + rise;
 }
 
 bool Fillets::begins_at(const Part& part, const PipePlace& place) const {
   const CreaseCurve& curve = outside_->pipes.curve_of(part.pipe);
   const Vec3d c = curve.at(place.u);
+  const Vec3d x = c + place.normal * outside_->radius;
+  if (min(x, part.low) != part.low || max(x, part.high) != part.high) return false;
   const bool is_end = place.u <= curve.u0 || place.u >= curve.u1;
   if (part.has_sides && !is_end) {
     if (!is_between(place.normal, part.side_a, part.side_b)) return false;
@@ -105,8 +115,9 @@ bool Fillets::begins_at(const Part& part, const PipePlace& place) const {
     }
     if (!found) return false;
   }
+  if (place.u > part.plain0 && place.u < part.plain1) return true;
   const double r = outside_->radius;
-  return !outside_->pipes.holds(c + place.normal * r, r * (1 - kOnBall));
+  return !outside_->pipes.holds(x, r * (1 - kOnBall));
 }
 
 std::optional<FilletCrossing> Fillets::meet(std::uint32_t index, Vec3d origin, Vec3d direction,

@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "rounding/creased_solid.h"
+#include "rounding/plain_crease.h"
 
 namespace arris {
 
@@ -25,12 +26,14 @@ struct FilletCrossing {
 
 class Fillets {
  public:
-  // `outside`: the creased solid of the space outside.
-  explicit Fillets(const CreasedSolid& outside);
+  // `outside`: the creased solid of the space outside; plain: stretches of its creases.
+  Fillets(const CreasedSolid& outside, std::span<const PlainCrease> plain);
 
   [[nodiscard]] std::size_t part_count() const { return parts_.size(); }
   // Holds the fillet's surface along one part.
-  [[nodiscard]] Box box_of(std::uint32_t part) const;
+  [[nodiscard]] Box box_of(std::uint32_t part) const {
+    return {parts_[part].low, parts_[part].high, part};
+  }
 
   // Where a ray crosses one part's surface of the fillets, within ]t_min, t_max[: the first place of those wanted.
   struct Wanted {
@@ -52,8 +55,12 @@ class Fillets {
     // Where the balls around a segment touch: the same all along it.
     bool has_sides = false;
     Vec3d side_a, side_b;
+    // Of the curve, where no other pipe is near.
+    double plain0 = 0, plain1 = 0;
+    Vec3d low{}, high{};  // see box_of()
   };
 
+  void set_box(Part& part) const;
   [[nodiscard]] Contacts contacts_at(Vec3d c) const;
   [[nodiscard]] bool begins_at(const Part& part, const PipePlace& place) const;
 

@@ -24,7 +24,8 @@ class CreasedMaker {
       : in_(in),
         shells_(shells),
         outer_(in.welded.shells[shells.front()]),
-        center_(outer_.center()) {
+        center_(outer_.center()),
+        r_(in.radius) {
     for (const std::uint32_t s : shells) {
       const Shell& shell = in.welded.shells[s];
       const auto first = in.welded.triangles_by_shell.begin() + shell.first_triangle;
@@ -34,6 +35,16 @@ class CreasedMaker {
       const auto kinds = in.kinds.subspan(std::size_t{3} * t, 3);
       return std::ranges::count(kinds, EdgeKind::smooth) > 0;
     });
+    if (in.radii.empty()) return;
+    r_ = 0;
+    for (const std::uint32_t t : triangles_) {
+      for (std::uint32_t h = 3 * t; h < 3 * t + 3; ++h) {
+        if (in.kinds[h] != EdgeKind::convex) continue;
+        has_own_radii_ = has_own_radii_ || in.radii[h] != in.radius;
+        r_ = std::max(r_, in.radii[h]);
+      }
+    }
+    if (!has_own_radii_) r_ = in.radius;
   }
 
   // Closed, and there is a face on both sides of every edge.
@@ -54,14 +65,13 @@ class CreasedMaker {
     SolidSurface surface = make_surface();
     if (has_smooth_edges_ && is_too_fine(surface)) return std::nullopt;
     const std::vector<FacePair> sharp = join_smooth_faces(surface);
-    FoundCreases found = find_creases(
-        {in_.welded, in_.regions, in_.kinds, shells_, surface, center_, outer_.size(), in_.radius});
+    VariedCreases found = find(surface);
     std::vector<CreaseCurve>& creases = found.curves;
     if (creases.empty()) return std::nullopt;
     // Fillets are all or none: the space outside has no faces to keep beside them.
     if (in_.is_outside && !found.missing.empty()) return std::nullopt;
     std::vector<FacePair> thin;
-    if (!in_.is_outside) thin = find_thin_walls({surface, {}, sharp, in_.regions, in_.radius});
+    if (!in_.is_outside) thin = find_thin_walls({surface, {}, sharp, in_.regions, r_});
     // Edges that stay sharp end thin walls, too.
     for (const auto& [a, b] : found.missing) thin.insert(thin.end(), {{a, b}, {b, a}});
     surface.set_thin(thin);
@@ -73,13 +83,33 @@ class CreasedMaker {
     std::vector<TriangleBand> bands = parallel_collect<TriangleBand>(
         triangles_.size(), kTrianglesAtOnce,
         [&](std::size_t i, auto& list) { append_bands(surface, triangles_[i], list); });
-    const double tolerance = crease_tolerance(outer_.size(), in_.radius);
-    CreasedSolid solid{std::move(surface), CreasePipes(std::move(creases), in_.radius), in_.radius,
-                       tolerance, std::move(loose)};
-    return MadeCreased{std::move(solid), std::move(bands), edges_between(found.missing)};
+    const double tolerance = crease_tolerance(outer_.size(), r_);
+    CreasedSolid solid{std::move(surface),
+                       CreasePipes(std::move(creases), r_),
+                       std::move(found.field),
+                       r_,
+                       tolerance,
+                       std::move(loose)};
+    std::vector<PlainCrease> plain = find_plain_creases(solid, in_.regions.planes);
+    for (const std::uint32_t h : edges_between(found.missing)) found.smaller.push_back({h, 0});
+    return MadeCreased{std::move(solid), std::move(bands), std::move(found.smaller),
+                       std::move(plain)};
   }
 
  private:
+  [[nodiscard]] VariedCreases find(const SolidSurface& surface) const {
+    const CreaseInput input{in_.welded, in_.regions, in_.kinds,     shells_,
+                            surface,    center_,     outer_.size(), r_};
+    const bool clamp = in_.on_overlap == OnOverlap::clamp && !in_.is_outside;
+    if (has_own_radii_) return find_varied_creases({input, in_.radii, clamp});
+    FoundCreases found = find_creases(input);
+    if (clamp && !found.missing.empty()) {
+      const std::vector<double> radii(in_.kinds.size(), r_);
+      return find_varied_creases({input, radii, clamp});
+    }
+    return {std::move(found.curves), RadiusField(r_), {}, std::move(found.missing)};
+  }
+
   [[nodiscard]] SolidSurface make_surface() const {
     std::vector<SurfaceTriangle> triangles;
     triangles.reserve(triangles_.size());
@@ -91,7 +121,7 @@ class CreasedMaker {
       };
       triangles.push_back({at(0), at(1), at(2), in_.regions.region[t], t});
     }
-    return {std::move(triangles), in_.radius};
+    return {std::move(triangles), r_};
   }
 
   // Comes out: faces that meet in convex edges, each pair in both orders; sorted.
@@ -105,7 +135,7 @@ class CreasedMaker {
     std::ranges::sort(sharp);
     smooth.erase(std::unique(smooth.begin(), smooth.end()), smooth.end());
     if (!smooth.empty()) {
-      surface.set_joined(find_smooth_reach({surface, smooth, sharp, in_.regions, in_.radius}));
+      surface.set_joined(find_smooth_reach({surface, smooth, sharp, in_.regions, r_}));
     }
     return sharp;
   }
@@ -137,7 +167,7 @@ class CreasedMaker {
     std::size_t near = 0, sampled = 0;
     for (std::size_t i = 0; i < triangles.size(); i += step, ++sampled) {
       const Vec3d middle = (triangles[i].p0 + triangles[i].p1 + triangles[i].p2) / 3.0;
-      const Vec3d reach(in_.radius);
+      const Vec3d reach(r_);
       surface.for_each_near(middle - reach, middle + reach,
                             [&](const SurfaceTriangle&) { ++near; });
     }
@@ -156,16 +186,16 @@ class CreasedMaker {
       bool found = false;
       near.for_each_near(x, x, [&](std::uint32_t i) {
         const CreaseCurve& c = creases[i];
-        found = found || length(x - c.at(nearest_parameter(c, x))) <= kNearCrease * in_.radius;
+        found = found || length(x - c.at(nearest_parameter(c, x))) <= kNearCrease * r_;
       });
       return found;
     };
-    const double least = in_.radius - crease_tolerance(outer_.size(), in_.radius);
+    const double least = r_ - crease_tolerance(outer_.size(), r_);
     const std::size_t before = thin.size();
     for (const SurfaceTriangle& t : surface.triangles()) {
       if (std::ranges::binary_search(rounded, t.region)) continue;
       const Vec3d middle = (t.p0 + t.p1 + t.p2) / 3.0;
-      const Vec3d c = middle - in_.regions.planes[t.region].normal * in_.radius;
+      const Vec3d c = middle - in_.regions.planes[t.region].normal * r_;
       if (!surface.is_near(c, least, t.region) || is_at_crease(middle)) continue;
       surface.for_each_near(c - Vec3d(least), c + Vec3d(least), [&](const SurfaceTriangle& other) {
         if (other.region == t.region || surface.is_joined(t.region, other.region)) return;
@@ -186,7 +216,7 @@ class CreasedMaker {
       const CreaseCurve& c = creases[i];
       const Vec3d p0 = c.at(c.u0), p1 = c.at(c.u1);
       const double bulge = c.is_line ? 0 : 0.5 * (c.u1 - c.u0) * std::max(length(c.a), length(c.b));
-      const Vec3d reach(kNearCrease * in_.radius + bulge);
+      const Vec3d reach(kNearCrease * r_ + bulge);
       boxes.push_back({min(p0, p1) - reach, max(p0, p1) + reach, i});
     }
     return BoxTree(std::move(boxes));
@@ -200,7 +230,7 @@ class CreasedMaker {
     const auto at = [&](std::size_t k) { return Vec3d(in_.mesh.positions[corners[k]]) - center_; };
     const SurfaceTriangle triangle{at(0), at(1), at(2), in_.regions.region[t], t};
     const Vec3d normal = in_.regions.planes[triangle.region].normal;
-    for (const DepthAtCorners& d : find_depths(surface, triangle, normal, in_.radius)) {
+    for (const DepthAtCorners& d : find_depths(surface, triangle, normal, r_)) {
       bands.push_back({t, {float(d.d0), float(d.d1 - d.d0), float(d.d2 - d.d0), kNone}});
     }
   }
@@ -209,6 +239,8 @@ class CreasedMaker {
   std::span<const std::uint32_t> shells_;
   const Shell& outer_;
   Vec3d center_;
+  double r_;  // the largest of its edges
+  bool has_own_radii_ = false;
   std::vector<std::uint32_t> triangles_;  // of the mesh
   bool has_smooth_edges_ = false;
 };

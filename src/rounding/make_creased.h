@@ -13,6 +13,8 @@
 #include "edges/welded_mesh.h"
 #include "rounding/bands.h"
 #include "rounding/creased_solid.h"
+#include "rounding/plain_crease.h"
+#include "rounding/varied_creases.h"
 
 namespace arris {
 
@@ -22,6 +24,8 @@ struct CreasedInput {
   const FlatRegions& regions;
   std::span<const EdgeKind> kinds;  // per half-edge
   double radius;
+  OnOverlap on_overlap = OnOverlap::report;
+  std::span<const double> radii{};  // per half-edge, of convex ones; empty: all have the radius
   bool is_outside =
       false;  // of the space outside (outside_mesh.h): without CreasedSolid::shape, and flat faces alone
 };
@@ -29,8 +33,9 @@ struct CreasedInput {
 struct MadeCreased {
   CreasedSolid solid;
   std::vector<TriangleBand> bands;
-  // Half-edges, one of each pair, whose edges stay sharp: the radius has no room beside them.
-  std::vector<std::uint32_t> left_sharp;
+  // Half-edges, one of each pair, whose edges have a smaller radius than they should, or stay sharp: there is no room.
+  std::vector<VariedCreases::Edge> clamped;
+  std::vector<PlainCrease> plain;
 };
 
 // shells: the outside of one solid, then its hollows. Nothing: something about them is open, no edge has room, or facets

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <map>
 #include <numeric>
 #include <optional>
 #include <string>
@@ -11,9 +12,11 @@
 #include "edges/inscribed_ball.h"
 #include "rounding/bands.h"
 #include "rounding/crease_network.h"
+#include "rounding/edge_radii.h"
 #include "rounding/eroded_polyhedron.h"
 #include "rounding/make_creased.h"
 #include "rounding/outside_mesh.h"
+#include "rounding/plain_lists.h"
 #include "rounding/rounding_data.h"
 #include "rounding/rounding_parts.h"
 
@@ -40,15 +43,23 @@ class RoundingMaker {
       regions_ = make_flat_regions(welded_);
     }
     classify_edges();
+    radii_ = find_edge_radii(mesh_, welded_, regions_, kinds_, options_);
     sort_triangles_by_region();
     make_solids();
     for (std::uint32_t s = 0; s < data_->solids.size(); ++s) judge_shape(s);
     make_creased_solids();
     make_filled_solids();
+    list_plain_creases();
+    leave_edges_without_radius();
     // A mesh of bevels has each edge of its own.
     const ShortEdges short_edges = keep_networks_ ? ShortEdges::leave_sharp : ShortEdges::skip;
-    NetworkBuilder builder(welded_, regions_, kinds_, options_.radius, short_edges);
-    for (std::uint32_t s = 0; s < data_->solids.size(); ++s) round_solid(builder, s);
+    std::map<double, NetworkBuilder> builders;
+    for (std::uint32_t s = 0; s < data_->solids.size(); ++s) {
+      const double radius = data_->solids[s].radius;
+      const auto at =
+          builders.try_emplace(radius, welded_, regions_, kinds_, radius, short_edges).first;
+      round_solid(at->second, s);
+    }
     sort_bands();
     fill_links();
     if (options_.detection == Detection::kd_tree) make_tree();
@@ -141,6 +152,7 @@ class RoundingMaker {
       solid.size = welded_.shells[s].size();
       solid.closed = welded_.shells[s].closed;
       solid.turned = welded_.shells[s].turned;
+      solid.radius = options_.radius;
     }
     for (std::uint32_t f = 0; f < data_->faces.size(); ++f) {
       Solid& solid = data_->solids[data_->faces[f].solid];
@@ -214,11 +226,47 @@ class RoundingMaker {
     std::vector<std::vector<std::uint32_t>> hollows = hollows_of_shells();
     for (std::uint32_t s = 0; s < data_->solids.size(); ++s) {
       if (is_cavity(welded_.shells[s]) || !welded_.shells[s].closed) continue;
-      if (data_->solids[s].convex && hollows[s].empty()) continue;
+      const bool is_convex = data_->solids[s].convex && hollows[s].empty();
+      if (is_convex && !has_own_radii(s)) continue;
       hollows[s].insert(hollows[s].begin(), s);
       solids.push_back(std::move(hollows[s]));
     }
     return solids;
+  }
+
+  template <class Visit>
+  void for_convex_edges(std::uint32_t s, const Visit& visit) const {
+    const Shell& shell = welded_.shells[s];
+    for (std::uint32_t i = 0; i < shell.triangle_count; ++i) {
+      const std::uint32_t t = welded_.triangles_by_shell[shell.first_triangle + i];
+      for (std::uint32_t h = 3 * t; h < 3 * t + 3; ++h) {
+        if (kinds_[h] == EdgeKind::convex && h < welded_.twin[h]) visit(h);
+      }
+    }
+  }
+  [[nodiscard]] bool has_own_radii(std::uint32_t s) const {
+    bool any = false;
+    if (!radii_.empty()) {
+      for_convex_edges(s, [&](std::uint32_t h) { any = any || radii_[h] != options_.radius; });
+    }
+    return any;
+  }
+
+  // Edges without a radius stay sharp everywhere; the others of what isn't a creased solid have the options' radius.
+  void leave_edges_without_radius() {
+    if (radii_.empty()) return;
+    for (std::uint32_t s = 0; s < data_->solids.size(); ++s) {
+      const bool creased = data_->solids[s].creased != kNone;
+      for_convex_edges(s, [&](std::uint32_t h) {
+        if (radii_[h] == 0) {
+          kinds_[h] = kinds_[welded_.twin[h]] = EdgeKind::smooth;
+          ++sharp_by_rule_;
+          data_->solids[s].all_rounded = data_->solids[s].exact = false;
+        } else if (!creased && radii_[h] != options_.radius) {
+          ++rules_ignored_;
+        }
+      });
+    }
   }
 
   // A hollow is of the smallest shell around it.
@@ -240,17 +288,21 @@ class RoundingMaker {
 
   void make_creased_solids() {
     const std::vector<std::vector<std::uint32_t>> wanted = shells_for_creases();
-    const CreasedInput input{mesh_, welded_, regions_, kinds_, options_.radius};
+    const CreasedInput input{mesh_, welded_, regions_, kinds_, options_.radius, options_.on_overlap,
+                             radii_};
     std::vector<std::optional<MadeCreased>> made(wanted.size());
     parallel_for(wanted.size(), {},
                  [&](std::size_t i) { made[i] = make_creased_solid(input, wanted[i]); });
     for (std::size_t i = 0; i < wanted.size(); ++i) {
       if (!made[i]) continue;
       bands_.insert(bands_.end(), made[i]->bands.begin(), made[i]->bands.end());
-      for (const std::uint32_t s : wanted[i]) join(s, wanted[i].front());
-      for (const std::uint32_t h : made[i]->left_sharp) add_clamped(h, 0);
-      left_in_creased_ += made[i]->left_sharp.size();
+      for (const std::uint32_t s : wanted[i]) join(s, wanted[i].front(), made[i]->solid.radius);
+      for (const VariedCreases::Edge& e : made[i]->clamped) {
+        add_clamped(e.half_edge, e.radius);
+        ++(e.radius > 0 ? clamped_ : left_in_creased_);
+      }
       data_->creased.push_back(std::make_unique<const CreasedSolid>(std::move(made[i]->solid)));
+      plain_.push_back({wanted[i].front(), false, std::move(made[i]->plain)});
     }
   }
 
@@ -260,9 +312,10 @@ class RoundingMaker {
   }
 
   // Makes a shell part of the creased solid to come, in coordinates relative to the outer one's centre.
-  void join(std::uint32_t s, std::uint32_t outer) {
+  void join(std::uint32_t s, std::uint32_t outer, double radius) {
     Solid& solid = data_->solids[s];
     solid.creased = std::uint32_t(data_->creased.size());
+    solid.radius = radius;
     solid.convex = solid.exact = false;
     if (s == outer) return;
     solid.hollow = true;
@@ -282,23 +335,44 @@ class RoundingMaker {
       const Shell& shell = welded_.shells[s];
       if (shell.closed && !is_cavity(shell) && concave_edges_of(s) > 0) wanted.push_back(s);
     }
-    const CreasedInput input{mesh_,           outside_->welded, outside_->regions,
-                             outside_->kinds, options_.radius,  true};
+    const CreasedInput input{mesh_,
+                             outside_->welded,
+                             outside_->regions,
+                             outside_->kinds,
+                             options_.radius,
+                             OnOverlap::report,
+                             {},
+                             true};
     std::vector<std::optional<MadeCreased>> made(wanted.size());
     parallel_for(wanted.size(), {}, [&](std::size_t i) {
       made[i] = make_creased_solid(input, std::span(wanted).subspan(i, 1));
     });
     for (std::size_t i = 0; i < wanted.size(); ++i) {
       if (!made[i]) continue;
-      bands_.insert(bands_.end(), made[i]->bands.begin(), made[i]->bands.end());
-      fill(wanted[i], std::move(made[i]->solid));
+      covers_.insert(covers_.end(), made[i]->bands.begin(), made[i]->bands.end());
+      plain_.push_back({wanted[i], true, std::move(made[i]->plain)});
+      fill(wanted[i], std::move(made[i]->solid), plain_.back().creases);
     }
+    bands_.insert(bands_.end(), covers_.begin(), covers_.end());
   }
 
-  void fill(std::uint32_t s, CreasedSolid outside) {
+  // What rays meet along most of the edges of creased and filled solids.
+  void list_plain_creases() {
+    if (plain_.empty()) return;
+    PlainLists lists(mesh_, covers_);
+    for (const SolidCreases& of : plain_) {
+      const Solid& solid = data_->solids[of.solid];
+      lists.add(
+          of.is_fillet ? data_->filled[solid.filled]->outside : *data_->creased[solid.creased],
+          solid.center, of.creases, of.is_fillet);
+    }
+    lists.put_into(*data_);
+  }
+
+  void fill(std::uint32_t s, CreasedSolid outside, std::span<const PlainCrease> plain) {
     Solid& solid = data_->solids[s];
     solid.filled = std::uint32_t(data_->filled.size());
-    data_->filled.push_back(std::make_unique<const FilledSolid>(std::move(outside)));
+    data_->filled.push_back(std::make_unique<const FilledSolid>(std::move(outside), plain));
     const std::uint64_t edges = concave_edges_of(s);
     filled_edges_ += edges;
     data_->report.rounded_edges += edges;
@@ -538,6 +612,14 @@ class RoundingMaker {
     note(narrow_ + left_in_creased_,
          "edge stays sharp: the radius is too large for the faces beside it",
          "edges stay sharp: the radius is too large for the faces beside them");
+    note(clamped_, "edge has a smaller radius: its own is too large for what lies beside it",
+         "edges have a smaller radius: their own is too large for what lies beside them");
+    note(sharp_by_rule_, "edge stays sharp: its radius is 0",
+         "edges stay sharp: their radius is 0");
+    note(rules_ignored_,
+         "edge has the object's radius instead of its own: it is of no closed solid that is exact",
+         "edges have the object's radius instead of their own: they are of no closed solid that is "
+         "exact");
     note(too_small_, "solid stays sharp: no ball of the radius fits into it",
          "solids stay sharp: no ball of the radius fits into them");
   }
@@ -553,8 +635,9 @@ class RoundingMaker {
     const auto of = [](const auto& v) { return v.size() * sizeof(v[0]); };
     return of(data_->band_begin) + of(data_->bands) + of(data_->face) + of(data_->faces) +
            of(data_->arcs) + of(data_->nodes) + of(data_->links) + of(data_->solids) +
-           of(data_->fillet_boxes) + of(data_->fillet_parts) +
-           (data_->tree ? data_->tree->bytes() : 0) + creased_bytes();
+           of(data_->fillet_boxes) + of(data_->fillet_parts) + of(data_->plain) +
+           of(data_->plain_begin) + of(data_->plain_on) + (data_->tree ? data_->tree->bytes() : 0) +
+           creased_bytes();
   }
 
   const MeshView& mesh_;
@@ -564,14 +647,22 @@ class RoundingMaker {
   WeldedMesh welded_;
   FlatRegions regions_;
   std::vector<EdgeKind> kinds_;
+  std::vector<double> radii_;  // per half-edge, of convex ones; empty: all have the options'
   std::optional<OutsideMesh> outside_;  // if concave edges are to be rounded, and there are any
   std::vector<std::uint32_t> triangle_begin_, triangles_;
-  std::vector<TriangleBand> bands_;
+  std::vector<TriangleBand> bands_, covers_;  // covers: those of fillets
+  struct SolidCreases {
+    std::uint32_t solid;
+    bool is_fillet;
+    std::vector<PlainCrease> creases;
+  };
+  std::vector<SolidCreases> plain_;
   std::vector<std::uint32_t> walls_;
   bool keep_networks_ = false;
   std::vector<ShellNetwork> networks_;
   std::uint64_t cavities_ = 0, shortened_ = 0, narrow_ = 0, too_small_ = 0, unasked_ = 0;
   std::uint64_t filled_edges_ = 0, left_in_creased_ = 0;
+  std::uint64_t clamped_ = 0, sharp_by_rule_ = 0, rules_ignored_ = 0;
 };
 
 }  // namespace

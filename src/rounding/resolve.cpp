@@ -220,6 +220,24 @@ class CreasedHit {
         inner_(solid.creased == kNone ? nullptr : data.creased[solid.creased].get()),
         filled_(solid.filled == kNone ? nullptr : data.filled[solid.filled].get()) {}
 
+  // Most hits beside edges end here: those beside a plain stretch of a crease. Nothing: resolve() decides.
+  [[nodiscard]] std::optional<Resolution> settle_plainly(const MeshHit& hit) const {
+    for (const std::uint32_t index : plain_creases_on(data_, hit.triangle)) {
+      const PlainCrease& crease = data_.plain[index];
+      const CreasedSolid* const solid = crease.is_fillet ? &filled_->outside : inner_;
+      const bool backwards = entering_ == crease.is_fillet;
+      const Vec3d direction = backwards ? -at_.direction : at_.direction;
+      const std::optional<PlainCrossing> crossing =
+          cross_plainly(crease, *solid, at_.face, {at_.x, direction});
+      if (!crossing) continue;
+      const double along = crossing->t / at_.scale;
+      const double t = backwards ? at_.t - along : at_.t + along;
+      if (crease.is_fillet) return onto_fillet(*crossing, t);
+      return beside_crease(*crossing, t);
+    }
+    return std::nullopt;
+  }
+
   // Nothing: the local network decides.
   [[nodiscard]] std::optional<Resolution> resolve(const Ray& ray) const {
     // From a local rounding's void: the solid is closed, and its inside is not met.
@@ -264,6 +282,28 @@ class CreasedHit {
   }
   static Feature feature_of(const PipeHit& met) {
     return met.at_end ? Feature::corner : Feature::edge;
+  }
+
+  // From outside into a fillet, or from a solid whose convex edges stay sharp out of one.
+  [[nodiscard]] std::optional<Resolution> onto_fillet(const PlainCrossing& crossing,
+                                                      double t) const {
+    const bool leaves_void = !entering_ && (inner_ != nullptr || start_ == RayStart::outside);
+    const bool is_ahead = t * at_.scale > filled_->outside.tolerance;
+    if (leaves_void || !is_ahead || !crossing.normal) return std::nullopt;
+    return make(Resolution::Outcome::moved, t, -*crossing.normal, Feature::fillet);
+  }
+
+  // t: where the pipe is met, or the void ends.
+  [[nodiscard]] std::optional<Resolution> beside_crease(const PlainCrossing& crossing,
+                                                        double t) const {
+    if (!entering_ && start_ == RayStart::outside) {
+      // It began in the void, or it is not known how it came there.
+      if (t * at_.scale > inner_->tolerance) return std::nullopt;
+      return make(Resolution::Outcome::passed, at_.t, normal_, Feature::face);
+    }
+    if (crossing.normal)
+      return make(Resolution::Outcome::moved, t, *crossing.normal, Feature::edge);
+    return make(Resolution::Outcome::passed, at_.t, normal_, Feature::face);
   }
 
   // From the fillet into the solid, or the other way.
@@ -399,7 +439,9 @@ Resolution Rounding::resolve(const Ray& ray, const MeshHit& hit, RayStart start)
   }
   const FaceHit at = locate(*data_, ray, hit);
   if (solid.creased != kNone || solid.filled != kNone) {
-    const std::optional<Resolution> found = CreasedHit(*data_, solid, at, start).resolve(ray);
+    const CreasedHit creased(*data_, solid, at, start);
+    std::optional<Resolution> found = creased.settle_plainly(hit);
+    if (!found) found = creased.resolve(ray);
     if (found) return *found;
   }
   out.hit = {at.t, Vec3d(face.normal)};

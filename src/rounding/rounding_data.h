@@ -9,6 +9,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -17,6 +18,7 @@
 #include "rounding/creased_solid.h"
 #include "rounding/detection_tree.h"
 #include "rounding/fillets.h"
+#include "rounding/plain_crease.h"
 
 namespace arris {
 
@@ -73,6 +75,7 @@ struct Face {
 struct Solid {
   Vec3d center;
   double size = 0;
+  double radius = 0;  // of its arcs; of a creased solid's edges the largest
   std::uint32_t first_arc = 0, arc_count = 0;
   std::uint32_t first_node = 0, node_count = 0;
   std::uint32_t first_face = 0, face_count = 0;
@@ -91,7 +94,8 @@ struct FilledSolid {
   CreasedSolid outside;
   Fillets fillets;
 
-  explicit FilledSolid(CreasedSolid made) : outside(std::move(made)), fillets(outside) {}
+  FilledSolid(CreasedSolid made, std::span<const PlainCrease> plain)
+      : outside(std::move(made)), fillets(outside, plain) {}
   FilledSolid(const FilledSolid&) = delete;
   FilledSolid& operator=(const FilledSolid&) = delete;
 };
@@ -110,6 +114,9 @@ struct Rounding::Data {
   std::unique_ptr<const DetectionTree> tree;  // with Detection::kd_tree
   std::vector<std::unique_ptr<const CreasedSolid>> creased;
   std::vector<std::unique_ptr<const FilledSolid>> filled;
+  // Of creased and filled solids; plain_on: those of each triangle, from plain_begin on, which is empty if there are none.
+  std::vector<PlainCrease> plain;
+  std::vector<std::uint32_t> plain_begin, plain_on;
   // Parts of all fillets, and whose they are.
   struct FilletPart {
     std::uint32_t solid, part;
@@ -118,6 +125,14 @@ struct Rounding::Data {
   std::vector<FilletPart> fillet_parts;
   RoundingReport report;
 };
+
+// Those whose void reaches into a triangle.
+inline std::span<const std::uint32_t> plain_creases_on(const Rounding::Data& data,
+                                                       std::uint32_t triangle) {
+  if (data.plain_begin.empty()) return {};
+  const std::uint32_t first = data.plain_begin[triangle];
+  return std::span(data.plain_on).subspan(first, data.plain_begin[triangle + 1] - first);
+}
 
 // The test that every hit on a rounded mesh takes. Not kept by it means: resolve() decides.
 inline bool is_kept_by_bands(const std::uint32_t* band_begin, const Band* bands,

@@ -75,6 +75,7 @@ bool SolidSurface::is_near(Vec3d x, double distance, std::uint32_t but_region) c
   bool found = false;
   for_each_near(x - Vec3d(distance), x + Vec3d(distance), [&](const SurfaceTriangle& t) {
     if (found || t.region == but_region) return;
+    if (is_plainly_beyond(x, t, distance)) return;
     found = length_squared(x - nearest_on_triangle(x, t)) < distance * distance &&
             !is_joined(but_region, t.region);
   });
@@ -114,11 +115,14 @@ SolidSurface::Exit SolidSurface::first_exit(Vec3d origin, Vec3d direction, doubl
     const Vec3d normal = cross(t.p1 - t.p0, t.p2 - t.p0);
     const double across = dot(normal, direction);
     if (!(across > 0)) return;
+    // Beyond what was found.
+    const double ahead = dot(normal, t.p0 - origin);
+    if (!(ahead > after * across && ahead < exit.t * across)) return;
     const double w0 = side_of(origin, direction, t.p1, t.p2);
     const double w1 = side_of(origin, direction, t.p2, t.p0);
     const double w2 = side_of(origin, direction, t.p0, t.p1);
     if (w0 < 0 || w1 < 0 || w2 < 0) return;
-    const double at = dot(normal, t.p0 - origin) / across;
+    const double at = ahead / across;
     if (at > after && at < exit.t) exit = {at, t.region};
   });
   return exit;

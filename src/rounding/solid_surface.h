@@ -22,6 +22,13 @@ struct SurfaceTriangle {
 };
 
 Vec3d nearest_on_triangle(Vec3d x, const SurfaceTriangle& t);
+// Whether the triangle's plane is farther away.
+inline bool is_plainly_beyond(Vec3d x, const SurfaceTriangle& t, double distance) {
+  constexpr double kSurely = 1 + 1e-9;  // whatever rounding does
+  const Vec3d normal = cross(t.p1 - t.p0, t.p2 - t.p0);
+  const double above = dot(normal, x - t.p0);
+  return above * above > distance * distance * length_squared(normal) * kSurely;
+}
 // Whether it is seen at once that a triangle, of the given normal, is `reach` or more from another one.
 bool is_beyond_reach(const std::array<Vec3d, 3>& corners, Vec3d normal, const SurfaceTriangle& t,
                      double reach);
