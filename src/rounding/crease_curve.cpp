@@ -117,9 +117,15 @@ double nearest_parameter(const CreaseCurve& curve, Vec3d x) {
   return best;
 }
 
-// Newton's method from the angle about its centre.
-double distance_to(const CreaseCurve& part, Vec3d x) {
-  if (part.is_line) return length(x - part.at(nearest_parameter(part, x)));
+// Of an arc by Newton's method from the angle about its centre.
+double distance_to_balls(const CreaseCurve& part, Vec3d x) {
+  if (part.is_line) {
+    double u = dot(x - part.center, part.a) / length_squared(part.a);
+    const double growth = part.growth();
+    if (growth != 0) u = nearest_ball(u, length(x - part.at(u)), growth);
+    u = std::clamp(u, part.u0, part.u1);
+    return length(x - part.at(u)) - part.radius_at(u);
+  }
   const Vec3d offset = x - part.center;
   const double p = dot(offset, part.a), q = dot(offset, part.b);
   const double aa = length_squared(part.a), bb = length_squared(part.b);
@@ -135,7 +141,7 @@ double distance_to(const CreaseCurve& part, Vec3d x) {
     u = std::clamp(u - slope / bend, part.u0, part.u1);
     if (std::abs(u - before) < 1e-7) break;
   }
-  return length(x - part.at(u));
+  return length(x - part.at(u)) - part.r0;
 }
 
 std::optional<CreaseCurve> face_face_crease(const Plane& a, const Plane& b, double radius,

@@ -10,6 +10,7 @@
 // Legend     r radius; a, b unit directions of edges; u parameter: x(u) = center + a·u, or center + a·cos u + b·sin u
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 #include <optional>
 #include <utility>
@@ -30,6 +31,9 @@ struct CreaseCurve {
 
   [[nodiscard]] Vec3d at(double u) const;
   [[nodiscard]] Vec3d derivative(double u) const;
+  // Of the balls' radius along a line, by u.
+  [[nodiscard]] double growth() const { return r0 == r1 ? 0 : (r1 - r0) / (u1 - u0); }
+  [[nodiscard]] double radius_at(double u) const { return r0 + growth() * (u - u0); }
 };
 
 // The roots within [u0, u1] of α + n·x(u).
@@ -39,8 +43,13 @@ void add_crossings(const CreaseCurve& curve, Vec3d normal, double alpha,
 // The nearest point of the curve to x, by its parameter.
 double nearest_parameter(const CreaseCurve& curve, Vec3d x);
 
-// The distance from a segment, or from a short part of an arc.
-double distance_to(const CreaseCurve& part, Vec3d x);
+// The distance from the balls around a segment, or around a short part of an arc; below 0 within them.
+double distance_to_balls(const CreaseCurve& part, Vec3d x);
+// Of a segment whose balls' radius grows by `growth` of the way: the place along it of the ball nearest to a point, by
+// the point's place along and distance from the axis.
+inline double nearest_ball(double along, double across, double growth) {
+  return along + growth * across / std::sqrt(1 - growth * growth);
+}
 
 // Lines and ellipses have their whole extent, or [−extent, extent].
 std::optional<CreaseCurve> face_face_crease(const Plane& a, const Plane& b, double radius,

@@ -140,9 +140,11 @@ class OutlineFinder {
   // Fractions of a segment of the surface at which it may begin or cease to be within balls.
   [[nodiscard]] std::vector<double> cuts_of(Vec3d p, Vec3d q) const {
     std::vector<double> cuts{0, 1};
-    const double least = solid_.least_distance(), extent = length(q - p);
+    const double least = -solid_.beneath(), extent = length(q - p);
     solid_.pipes.for_each_along(p, q - p, 1, [&](const CreaseCurve& other) {
-      const auto distance = [&](double part) { return distance_to(other, p + (q - p) * part); };
+      const auto distance = [&](double part) {
+        return distance_to_balls(other, p + (q - p) * part);
+      };
       // Distances change by no more than the way along the segment.
       const double at_p = distance(0), at_q = distance(1);
       if (at_p + at_q - extent >= 2 * least) return;

@@ -20,6 +20,7 @@ struct Span {
 struct Segment {
   Vec3d p0, p1, axis;  // axis: unit, or 0 if it has no extent
   double extent;
+  double radius, growth;  // at p0, and by the way along the axis
 };
 
 // Where a line is within r of a segment: the two are convex.
@@ -64,6 +65,50 @@ std::optional<Span> meet_capsule(Vec3d origin, Vec3d direction, const Segment& s
   return all;
 }
 
+// The same for balls whose radius grows along the segment: where a line meets the cone that touches all of them,
+// |x − c| = radius + growth s across its sides, or the balls at the ends.
+std::optional<Span> meet_cone(Vec3d origin, Vec3d direction, const Segment& segment) {
+  const auto& [p0, p1, axis, extent, radius, growth] = segment;
+  std::optional<Span> all;
+  const auto add = [&](double t) {
+    all = all ? Span{std::min(all->t0, t), std::max(all->t1, t)} : Span{t, t};
+  };
+  const Vec3d m = origin - p0;
+  const double dd = length_squared(direction), s0 = dot(m, axis), speed = dot(direction, axis);
+  const double g2 = growth * growth, r0 = radius + growth * s0;
+  const double a = (1 - g2) * (dd - speed * speed) - g2 * speed * speed;
+  const double b = (1 - g2) * (dot(m, direction) - s0 * speed) - growth * speed * r0;
+  const double c = (1 - g2) * (length_squared(m) - s0 * s0) - r0 * r0;
+  const double discriminant = b * b - a * c;
+  if (discriminant >= 0) {
+    const double q = -(b + std::copysign(std::sqrt(discriminant), b));
+    for (const double t : {q / a, c / q}) {
+      if (!std::isfinite(t)) continue;
+      const double s = s0 + speed * t;
+      const double side = radius + growth * s;
+      if (side < 0) continue;
+      const double ball = nearest_ball(s, side / std::sqrt(1 - g2), growth);
+      if (ball >= 0 && ball <= extent) add(t);
+    }
+  }
+  for (const auto& [center, r] : {std::pair(p0, radius), std::pair(p1, radius + growth * extent)}) {
+    const Vec3d from = origin - center;
+    const double at = dot(from, direction) / dd;
+    const double d = length_squared(from - direction * at);
+    if (d > r * r) continue;
+    const double half = std::sqrt((r * r - d) / dd);
+    add(-at - half);
+    add(-at + half);
+  }
+  return all;
+}
+
+std::optional<Span> meet_balls(Vec3d origin, Vec3d direction, const Segment& segment,
+                               double bulge) {
+  if (segment.growth != 0) return meet_cone(origin, direction, segment);
+  return meet_capsule(origin, direction, segment, segment.radius + bulge);
+}
+
 }  // namespace
 
 CreasePipes::Part CreasePipes::make_part(const CreaseCurve& curve) {
@@ -73,6 +118,8 @@ CreasePipes::Part CreasePipes::make_part(const CreaseCurve& curve) {
   part.p1 = curve.at(curve.u1);
   part.length = length(part.p1 - part.p0);
   if (part.length > 0) part.axis = (part.p1 - part.p0) / part.length;
+  part.radius = curve.r0;
+  if (part.length > 0) part.growth = (curve.r1 - curve.r0) / part.length;
   if (curve.is_line) return part;
   // An affine image of a circle's arc.
   part.bulge = (1 - std::cos(0.5 * (curve.u1 - curve.u0))) *
@@ -100,21 +147,18 @@ std::vector<CreasePipes::Part> CreasePipes::parts_of(std::span<const CreaseCurve
   return parts;
 }
 
-std::vector<Box> CreasePipes::boxes_of(std::span<const Part> parts, double radius) {
+std::vector<Box> CreasePipes::boxes_of(std::span<const Part> parts) {
   std::vector<Box> boxes;
   for (std::uint32_t i = 0; i < parts.size(); ++i) {
     const Part& part = parts[i];
-    const Vec3d reach(radius + part.bulge);
+    const Vec3d reach(std::max(part.curve.r0, part.curve.r1) + part.bulge);
     boxes.push_back({min(part.p0, part.p1) - reach, max(part.p0, part.p1) + reach, i});
   }
   return boxes;
 }
 
-CreasePipes::CreasePipes(std::vector<CreaseCurve> creases, double radius)
-    : creases_(std::move(creases)),
-      r_(radius),
-      parts_(parts_of(creases_)),
-      tree_(boxes_of(parts_, radius)) {}
+CreasePipes::CreasePipes(std::vector<CreaseCurve> creases)
+    : creases_(std::move(creases)), parts_(parts_of(creases_)), tree_(boxes_of(parts_)) {}
 
 CreasePipes::Foot CreasePipes::foot_on(const Part& part, Vec3d x) {
   if (!part.curve.is_line) {
@@ -126,8 +170,10 @@ CreasePipes::Foot CreasePipes::foot_on(const Part& part, Vec3d x) {
 }
 
 // From one t of a ray towards another, either way: where it first comes within r of the arc.
-std::optional<CreasePipes::ArcEntry> CreasePipes::step_to_arc(const ShortArc& arc, const Ray& ray,
-                                                              double from, double to) const {
+std::optional<CreasePipes::ArcEntry> CreasePipes::step_to_arc(const Part& part, const Ray& ray,
+                                                              double from, double to) {
+  const ShortArc& arc = part.arc;
+  const double r = part.radius;
   constexpr int kMostSteps = 200;
   constexpr double kSafePart = 0.5;  // of the longest safe step
   const double way = to < from ? -1 : 1;
@@ -140,8 +186,8 @@ std::optional<CreasePipes::ArcEntry> CreasePipes::step_to_arc(const ShortArc& ar
     const Vec3d x = ray.origin + ray.direction * t;
     turn = arc.nearest(x, turn);
     const Vec3d away = x - arc.at(turn);
-    const double distance = length(away), left = distance - r_;
-    if (std::abs(left) <= 1e-9 * r_ || (left < 0 && step == 0)) return ArcEntry{t, turn};
+    const double distance = length(away), left = distance - r;
+    if (std::abs(left) <= 1e-9 * r || (left < 0 && step == 0)) return ArcEntry{t, turn};
     if (left < 0) {
       // Too far, as the arc bends towards the ray: back along the chord.
       t = before + (t - before) * (left_before / (left_before - left));
@@ -150,7 +196,7 @@ std::optional<CreasePipes::ArcEntry> CreasePipes::step_to_arc(const ShortArc& ar
     before = t;
     left_before = left;
     const double fall = -dot(away, direction) / distance;
-    const double safe = std::max(left, kSafePart * r_ * fall);
+    const double safe = std::max(left, kSafePart * r * fall);
     t += unit * (fall > 0 ? std::min(left / fall, safe) : left);
     if ((t - to) * way <= 0) continue;
     if (before == to) break;
@@ -163,19 +209,24 @@ std::optional<PipeHit> CreasePipes::first_entry(Vec3d origin, Vec3d direction, d
   std::optional<PipeHit> best;
   tree_.for_each_along(origin, direction, 0, end, [&](std::uint32_t i) {
     const Part& part = parts_[i];
-    const std::optional<Span> span = meet_capsule(
-        origin, direction, {part.p0, part.p1, part.axis, part.length}, r_ + part.bulge);
+    const std::optional<Span> span = meet_balls(
+        origin, direction, {part.p0, part.p1, part.axis, part.length, part.radius, part.growth},
+        part.bulge);
     if (!span || span->t1 < 0 || span->t0 > end) return;
     double t = std::max(span->t0, 0.0);
     Vec3d foot;
     bool is_inner = false;
     if (part.curve.is_line) {
-      const double along = dot(origin + direction * t - part.p0, part.axis);
+      const Vec3d x = origin + direction * t - part.p0;
+      double along = dot(x, part.axis);
+      if (part.growth != 0) {
+        along = nearest_ball(along, length(x - part.axis * along), part.growth);
+      }
       foot = part.p0 + part.axis * std::clamp(along, 0.0, part.length);
       is_inner = along > 0 && along < part.length;
     } else {
       const std::optional<ArcEntry> met =
-          step_to_arc(part.arc, {origin, direction}, t, std::min(span->t1, end));
+          step_to_arc(part, {origin, direction}, t, std::min(span->t1, end));
       if (!met) return;
       t = met->t;
       foot = part.arc.at(met->turn);
@@ -193,7 +244,8 @@ std::optional<PipeSpan> CreasePipes::span_of(std::uint32_t index, Vec3d origin,
                                              Vec3d direction) const {
   const Part& part = parts_[index];
   const std::optional<Span> span =
-      meet_capsule(origin, direction, {part.p0, part.p1, part.axis, part.length}, r_ + part.bulge);
+      meet_balls(origin, direction,
+                 {part.p0, part.p1, part.axis, part.length, part.radius, part.growth}, part.bulge);
   if (!span) return std::nullopt;
   const auto place_at = [&](double t) {
     const Vec3d x = origin + direction * t;
@@ -202,17 +254,23 @@ std::optional<PipeSpan> CreasePipes::span_of(std::uint32_t index, Vec3d origin,
   };
   if (part.curve.is_line) return PipeSpan{place_at(span->t0), place_at(span->t1)};
   const Ray ray{origin, direction};
-  const std::optional<ArcEntry> in = step_to_arc(part.arc, ray, span->t0, span->t1);
+  const std::optional<ArcEntry> in = step_to_arc(part, ray, span->t0, span->t1);
   if (!in) return std::nullopt;
-  const std::optional<ArcEntry> out = step_to_arc(part.arc, ray, span->t1, in->t);
+  const std::optional<ArcEntry> out = step_to_arc(part, ray, span->t1, in->t);
   if (!out) return std::nullopt;
   return PipeSpan{place_at(in->t), place_at(out->t)};
 }
 
-bool CreasePipes::holds(Vec3d x, double distance) const {
+bool CreasePipes::holds(Vec3d x, double depth) const {
   bool found = false;
   tree_.for_each_near(x, x, [&](std::uint32_t i) {
-    found = found || length_squared(x - foot_on(parts_[i], x).point) < distance * distance;
+    const Part& part = parts_[i];
+    if (found || part.growth != 0) {
+      found = found || distance_to_balls(part.curve, x) < -depth;
+      return;
+    }
+    const double least = part.radius - depth;
+    found = length_squared(x - foot_on(part, x).point) < least * least;
   });
   return found;
 }

@@ -36,7 +36,7 @@ struct PipeSpan {
 
 class CreasePipes {
  public:
-  CreasePipes(std::vector<CreaseCurve> creases, double radius);
+  explicit CreasePipes(std::vector<CreaseCurve> creases);
 
   // The first place within [0, end] where the ray comes within r of a crease. One that leaves there does not count, so
   // that a ray may start on a pipe.
@@ -60,8 +60,8 @@ class CreasePipes {
   // The places between which a ray's whole line is within r of a part.
   [[nodiscard]] std::optional<PipeSpan> span_of(std::uint32_t index, Vec3d origin,
                                                 Vec3d direction) const;
-  // Whether a crease is nearer to x than `distance`, at most r.
-  [[nodiscard]] bool holds(Vec3d x, double distance) const;
+  // Whether x lies deeper than this within a ball.
+  [[nodiscard]] bool holds(Vec3d x, double depth) const;
 
   [[nodiscard]] std::span<const CreaseCurve> creases() const { return creases_; }
   [[nodiscard]] std::size_t bytes() const;
@@ -74,7 +74,8 @@ class CreasePipes {
     Vec3d p0, p1;      // ends of the chord
     Vec3d axis;        // unit, along the chord, or 0
     double length = 0;
-    ShortArc arc;  // if it is no segment
+    double radius = 0, growth = 0;  // at p0; of a segment, by the way along it
+    ShortArc arc;                   // if it is no segment
   };
   struct Foot {
     Vec3d point;
@@ -87,15 +88,14 @@ class CreasePipes {
 
   static Part make_part(const CreaseCurve& curve);
   static std::vector<Part> parts_of(std::span<const CreaseCurve> creases);
-  static std::vector<Box> boxes_of(std::span<const Part> parts, double radius);
+  static std::vector<Box> boxes_of(std::span<const Part> parts);
 
   // The nearest place of a part to x.
   [[nodiscard]] static Foot foot_on(const Part& part, Vec3d x);
-  [[nodiscard]] std::optional<ArcEntry> step_to_arc(const ShortArc& arc, const Ray& ray,
-                                                    double from, double to) const;
+  [[nodiscard]] static std::optional<ArcEntry> step_to_arc(const Part& part, const Ray& ray,
+                                                           double from, double to);
 
   std::vector<CreaseCurve> creases_;
-  double r_;
   std::vector<Part> parts_;
   BoxTree tree_;
 };

@@ -124,17 +124,18 @@ const CreaseShape& CreasedSolid::shape() const {
   return shape_->shape;
 }
 
-double CreasedSolid::least_distance() const {
-  return radius - std::max(kBeneath * radius, kTolerances * tolerance);
+double CreasedSolid::beneath() const {
+  return std::max(kBeneath * radius, kTolerances * tolerance);
 }
 
 // The nearest ball's centre is on a crease, or on the way from the nearest place of the surface through x: two balls
 // one of which holds the other touch there.
 bool CreasedSolid::is_beneath(Vec3d x) const {
   bool within = false;
-  const double least = least_distance();
-  pipes.for_each_near(
-      x, x, [&](const CreaseCurve& part) { within = within || distance_to(part, x) < least; });
+  const double least = -beneath();
+  pipes.for_each_near(x, x, [&](const CreaseCurve& part) {
+    within = within || distance_to_balls(part, x) < least;
+  });
   if (within) return true;
   double nearest = radius;
   Vec3d foot;
@@ -156,7 +157,6 @@ bool CreasedSolid::is_beneath(Vec3d x) const {
 
 bool CreasedSolid::is_through_material(Vec3d x, std::uint32_t region, Vec3d direction, double end,
                                        std::uint32_t end_region) const {
-  const auto is_loose = [&](std::uint32_t r) { return std::ranges::binary_search(loose, r); };
   if (!is_loose(region) && !is_loose(end_region)) return false;
   return std::ranges::any_of(kPlacesOnWay,
                              [&](double part) { return is_beneath(x + direction * (part * end)); });

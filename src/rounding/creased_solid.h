@@ -6,6 +6,7 @@
 // Guarantee  the surface is that of all balls of the radius that fit (tests/rounding/creased_test.cpp)
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <memory>
 #include <mutex>
@@ -47,10 +48,13 @@ struct CreasedSolid {
   [[nodiscard]] bool is_left_sharp(std::uint32_t face, std::uint32_t other, Vec3d middle) const {
     return surface.is_thin(face, other) || field.at(middle) <= tolerance;
   }
-  // The distance from a crease below which a point is beneath the rounded surface.
-  [[nodiscard]] double least_distance() const;
+  // How deep in balls a point is beneath the rounded surface.
+  [[nodiscard]] double beneath() const;
   // Whether a point of the solid lies beneath the rounded surface, by more than what rays are computed to.
   [[nodiscard]] bool is_beneath(Vec3d x) const;
+  [[nodiscard]] bool is_loose(std::uint32_t region) const {
+    return std::ranges::binary_search(loose, region);
+  }
   // Where edges stay sharp nothing ends their neighbours' voids: whether a way from x on a face, up to a place on
   // another one or a pipe, is no way through the void.
   [[nodiscard]] bool is_through_material(Vec3d x, std::uint32_t region, Vec3d direction, double end,

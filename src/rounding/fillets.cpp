@@ -117,7 +117,7 @@ bool Fillets::begins_at(const Part& part, const PipePlace& place) const {
   }
   if (place.u > part.plain0 && place.u < part.plain1) return true;
   const double r = outside_->radius;
-  return !outside_->pipes.holds(x, r * (1 - kOnBall));
+  return !outside_->pipes.holds(x, r * kOnBall);
 }
 
 std::optional<FilletCrossing> Fillets::meet(std::uint32_t index, Vec3d origin, Vec3d direction,

@@ -84,12 +84,9 @@ class CreasedMaker {
         triangles_.size(), kTrianglesAtOnce,
         [&](std::size_t i, auto& list) { append_bands(surface, triangles_[i], list); });
     const double tolerance = crease_tolerance(outer_.size(), r_);
-    CreasedSolid solid{std::move(surface),
-                       CreasePipes(std::move(creases), r_),
-                       std::move(found.field),
-                       r_,
-                       tolerance,
-                       std::move(loose)};
+    CreasedSolid solid{
+        std::move(surface), CreasePipes(std::move(creases)), std::move(found.field), r_, tolerance,
+        std::move(loose)};
     std::vector<PlainCrease> plain = find_plain_creases(solid, in_.regions.planes);
     for (const std::uint32_t h : edges_between(found.missing)) found.smaller.push_back({h, 0});
     return MadeCreased{std::move(solid), std::move(bands), std::move(found.smaller),
