@@ -192,8 +192,8 @@ std::optional<PipeHit> CreasePipes::first_entry(Vec3d origin, Vec3d direction, d
 std::optional<PipeSpan> CreasePipes::span_of(std::uint32_t index, Vec3d origin,
                                              Vec3d direction) const {
   const Part& part = parts_[index];
-  const std::optional<Span> span = meet_capsule(
-      origin, direction, {part.p0, part.p1, part.axis, part.length}, r_ + part.bulge);
+  const std::optional<Span> span =
+      meet_capsule(origin, direction, {part.p0, part.p1, part.axis, part.length}, r_ + part.bulge);
   if (!span) return std::nullopt;
   const auto place_at = [&](double t) {
     const Vec3d x = origin + direction * t;

@@ -298,9 +298,9 @@ class RoundingMaker {
     PlainLists lists(mesh_, covers_);
     for (const SolidCreases& of : plain_) {
       const Solid& solid = data_->solids[of.solid];
-      lists.add(of.is_fillet ? data_->filled[solid.filled]->outside
-                             : *data_->creased[solid.creased],
-                solid.center, of.creases, of.is_fillet);
+      lists.add(
+          of.is_fillet ? data_->filled[solid.filled]->outside : *data_->creased[solid.creased],
+          solid.center, of.creases, of.is_fillet);
     }
     lists.put_into(*data_);
   }
@@ -562,8 +562,8 @@ class RoundingMaker {
     return of(data_->band_begin) + of(data_->bands) + of(data_->face) + of(data_->faces) +
            of(data_->arcs) + of(data_->nodes) + of(data_->links) + of(data_->solids) +
            of(data_->fillet_boxes) + of(data_->fillet_parts) + of(data_->plain) +
-           of(data_->plain_begin) + of(data_->plain_on) +
-           (data_->tree ? data_->tree->bytes() : 0) + creased_bytes();
+           of(data_->plain_begin) + of(data_->plain_on) + (data_->tree ? data_->tree->bytes() : 0) +
+           creased_bytes();
   }
 
   const MeshView& mesh_;

@@ -107,13 +107,13 @@ class StretchFinder {
     const double half = 0.5 * (u1 - u0);
     const Vec3d p0 = spot_of(c.at(u0)), p1 = spot_of(c.at(u1)), p = spot_of(c.at(u0 + half));
     const auto rise = [&](Vec3d normal) {
-      return c.is_line ? 0
-                       : (1 - std::cos(half)) * std::hypot(dot(normal, c.a), dot(normal, c.b));
+      return c.is_line ? 0 : (1 - std::cos(half)) * std::hypot(dot(normal, c.a), dot(normal, c.b));
     };
     if (std::max(p0.x, p1.x) + rise(na_) <= slack_ && std::max(p0.y, p1.y) + rise(nb_) <= slack_) {
       return;
     }
-    const double extent = half * (c.is_line ? 1 : std::sqrt(length_squared(c.a) + length_squared(c.b)));
+    const double extent =
+        half * (c.is_line ? 1 : std::sqrt(length_squared(c.a) + length_squared(c.b)));
     const double d = std::max(section_.distance_from(p) - extent - slack_, 0.0);
     if (d >= r_) return;
     const double reach = std::sqrt(r_ * r_ - d * d) + extent;

@@ -291,7 +291,8 @@ class CreasedHit {
       if (t * at_.scale > inner_->tolerance) return std::nullopt;
       return make(Resolution::Outcome::passed, at_.t, normal_, Feature::face);
     }
-    if (crossing.normal) return make(Resolution::Outcome::moved, t, *crossing.normal, Feature::edge);
+    if (crossing.normal)
+      return make(Resolution::Outcome::moved, t, *crossing.normal, Feature::edge);
     return make(Resolution::Outcome::passed, at_.t, normal_, Feature::face);
   }
 
