@@ -27,7 +27,8 @@ constexpr double kBeneath = 1e-5;
 constexpr double kTolerances = 8;
 // Of the radius: a point this near to the sharp surface is on it.
 constexpr double kOnSurface = 1e-4;
-// Of a way that should lie in a void: where it is looked at.
+// Of a way that should lie in a void: how many radii beneath the surface it may not be, and where it is looked at.
+constexpr double kInMaterial = 0.02;
 constexpr std::array kPlacesOnWay{0.08, 0.25, 0.42, 0.58, 0.75, 0.92};
 // More functions than these cost more than asking the surface.
 constexpr std::size_t kMostDepths = 8;
@@ -105,7 +106,7 @@ bool is_same(const DepthAtCorners& a, const DepthAtCorners& b, double tolerance)
 
 bool CreasedSolid::is_kept(Vec3d x, Vec3d normal, std::uint32_t region) const {
   const double r = field.at(x);
-  return r <= tolerance || !surface.is_near(x - normal * r, r - tolerance, region);
+  return r <= tolerance || !surface.is_blocked(x - normal * r, r - tolerance, region, x);
 }
 
 VoidCrossing CreasedSolid::cross_void(Vec3d x, Vec3d direction) const {
@@ -130,9 +131,9 @@ double CreasedSolid::beneath() const {
 
 // The nearest ball's centre is on a crease, or on the way from the nearest place of the surface through x: two balls
 // one of which holds the other touch there.
-bool CreasedSolid::is_beneath(Vec3d x) const {
+bool CreasedSolid::is_beneath(Vec3d x, double radii) const {
   bool within = false;
-  const double least = -beneath();
+  const double least = -std::max(beneath(), radii * radius);
   pipes.for_each_near(x, x, [&](const CreaseCurve& part) {
     within = within || distance_to_balls(part, x) < least;
   });
@@ -150,16 +151,17 @@ bool CreasedSolid::is_beneath(Vec3d x) const {
   });
   if (nearest >= radius) return true;
   const double r = region == kNone ? radius : field.at(foot);
-  if (nearest < kOnSurface * radius || r <= tolerance) return false;
+  if (nearest < std::max(kOnSurface, radii) * radius || r <= tolerance) return false;
   const Vec3d center = foot + (x - foot) * (r / nearest);
-  return !surface.is_near(center, r - tolerance, region);
+  return !surface.is_blocked(center, r - tolerance, region, foot);
 }
 
 bool CreasedSolid::is_through_material(Vec3d x, std::uint32_t region, Vec3d direction, double end,
                                        std::uint32_t end_region) const {
   if (!is_loose(region) && !is_loose(end_region)) return false;
-  return std::ranges::any_of(kPlacesOnWay,
-                             [&](double part) { return is_beneath(x + direction * (part * end)); });
+  return std::ranges::any_of(kPlacesOnWay, [&](double part) {
+    return is_beneath(x + direction * (part * end), kInMaterial);
+  });
 }
 
 std::optional<EdgeBlend> CreasedSolid::blend_at(Vec3d x, Vec3d normal) const {

@@ -50,8 +50,9 @@ struct CreasedSolid {
   }
   // How deep in balls a point is beneath the rounded surface.
   [[nodiscard]] double beneath() const;
-  // Whether a point of the solid lies beneath the rounded surface, by more than what rays are computed to.
-  [[nodiscard]] bool is_beneath(Vec3d x) const;
+  // Whether a point of the solid lies beneath the rounded surface, by more than what rays are computed to, or by so many
+  // radii.
+  [[nodiscard]] bool is_beneath(Vec3d x, double radii = 0) const;
   [[nodiscard]] bool is_loose(std::uint32_t region) const {
     return std::ranges::binary_search(loose, region);
   }

@@ -193,7 +193,7 @@ class CreasedMaker {
       if (std::ranges::binary_search(rounded, t.region)) continue;
       const Vec3d middle = (t.p0 + t.p1 + t.p2) / 3.0;
       const Vec3d c = middle - in_.regions.planes[t.region].normal * r_;
-      if (!surface.is_near(c, least, t.region) || is_at_crease(middle)) continue;
+      if (!surface.is_blocked(c, least, t.region, middle) || is_at_crease(middle)) continue;
       surface.for_each_near(c - Vec3d(least), c + Vec3d(least), [&](const SurfaceTriangle& other) {
         if (other.region == t.region || surface.is_joined(t.region, other.region)) return;
         if (length(c - nearest_on_triangle(c, other)) >= least) return;

@@ -250,7 +250,7 @@ class CreasedHit {
     if (inner_ == nullptr) return std::nullopt;
     if (!entering_ && start_ == RayStart::outside) return out_of_void(ray, covered);
     if (kept) return stay();
-    return entering_ ? into_void() : from_inside(ray);
+    return entering_ ? into_void() : from_inside();
   }
 
  private:
@@ -350,11 +350,13 @@ class CreasedHit {
   }
 
   // Looked at backwards.
-  [[nodiscard]] Resolution from_inside(const Ray& ray) const {
-    const auto met = inner_->cross_void(at_.x, -at_.direction).met;
+  [[nodiscard]] Resolution from_inside() const {
+    const auto [met, exit] = inner_->cross_void(at_.x, -at_.direction);
     if (met && leaves_void(-at_.direction, met->t, kNone)) return stay();
-    const bool is_open = !met && start_ == RayStart::inside && inner_->is_loose(at_.face);
-    if (is_open && inner_->is_beneath(ray.origin - solid_.center)) return stay();
+    const double before = std::min(exit.t, at_.t * at_.scale);
+    if (!met && start_ == RayStart::inside && leaves_void(-at_.direction, before, exit.region)) {
+      return stay();
+    }
     if (!met) return make(Resolution::Outcome::passed, at_.t, normal_, Feature::face);
     return make(Resolution::Outcome::moved, at_.t - met->t / at_.scale, met->normal,
                 feature_of(*met));

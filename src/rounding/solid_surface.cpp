@@ -79,30 +79,36 @@ bool SolidSurface::is_near(Vec3d x, double distance, std::uint32_t but_region) c
     found = length_squared(x - nearest_on_triangle(x, t)) < distance * distance &&
             !is_joined(but_region, t.region);
   });
-  if (!found || thin_.empty()) return found;
-  const auto has_thin = std::ranges::lower_bound(thin_, but_region, {}, &FacePair::first);
-  if (has_thin == thin_.end() || has_thin->first != but_region) return true;
-  return is_near_before(x, distance, but_region);
+  return found;
 }
 
-// The same where walls are thin: what lies beyond the far side of one does not count.
-bool SolidSurface::is_near_before(Vec3d x, double distance, std::uint32_t but_region) const {
+bool SolidSurface::is_blocked(Vec3d center, double radius, std::uint32_t face,
+                              Vec3d touching) const {
+  if (!is_near(center, radius, face)) return false;
+  const auto first_thin = std::ranges::lower_bound(thin_, face, {}, &FacePair::first);
+  if (first_thin == thin_.end() || first_thin->first != face) return true;
   std::vector<const SurfaceTriangle*> far_sides;
   std::vector<Vec3d> near;
-  for_each_near(x - Vec3d(distance), x + Vec3d(distance), [&](const SurfaceTriangle& t) {
-    if (t.region == but_region || is_joined(but_region, t.region)) return;
-    const Vec3d p = nearest_on_triangle(x, t);
-    if (!(length_squared(x - p) < distance * distance)) return;
-    if (is_thin(but_region, t.region)) {
+  for_each_near(center - Vec3d(radius), center + Vec3d(radius), [&](const SurfaceTriangle& t) {
+    if (t.region == face || is_joined(face, t.region)) return;
+    const Vec3d p = nearest_on_triangle(center, t);
+    if (!(length_squared(center - p) < radius * radius)) return;
+    if (is_thin(face, t.region)) {
       far_sides.push_back(&t);
     } else {
       near.push_back(p);
     }
   });
+  // Whether the way from where the ball touches leads through a far side.
+  const double slack = kOnPlane * radius;
   const auto is_beyond = [&](Vec3d p) {
     return std::ranges::any_of(far_sides, [&](const SurfaceTriangle* t) {
-      const Vec3d normal = cross(t->p1 - t->p0, t->p2 - t->p0);
-      return dot(normal, p - t->p0) >= -kOnPlane * distance * length(normal);
+      const Vec3d normal = normalize(cross(t->p1 - t->p0, t->p2 - t->p0));
+      const double from = dot(normal, touching - t->p0), to = dot(normal, p - t->p0);
+      if (from > slack || to < -slack) return false;
+      const double part = from < to ? std::clamp(from / (from - to), 0.0, 1.0) : 1;
+      const Vec3d crossing = touching + (p - touching) * part;
+      return length(crossing - nearest_on_triangle(crossing, *t)) <= 10 * slack;
     });
   };
   return !std::ranges::all_of(near, is_beyond);

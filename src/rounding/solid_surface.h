@@ -56,6 +56,9 @@ class SolidSurface {
 
   // Whether a triangle of another region, one that isn't joined to it, is nearer to x than `distance`.
   [[nodiscard]] bool is_near(Vec3d x, double distance, std::uint32_t but_region) const;
+  // Whether something is in the way of a ball that touches a face at a place: the same, but for what is thin.
+  [[nodiscard]] bool is_blocked(Vec3d center, double radius, std::uint32_t face,
+                                Vec3d touching) const;
 
   // The t > after at which the ray first leaves through a triangle, and its region; infinity if it doesn't. A ray
   // through an edge meets both triangles.
@@ -75,8 +78,6 @@ class SolidSurface {
 
  private:
   std::vector<SurfaceTriangle> triangles_;
-  [[nodiscard]] bool is_near_before(Vec3d x, double distance, std::uint32_t but_region) const;
-
   std::vector<FacePair> joined_, thin_;  // sorted
   BoxTree tree_;
 };

@@ -216,17 +216,20 @@ class VariedFinder {
     const auto add = [&](double v, double radius) {
       if (knots.empty() || v > knots.back().v) knots.push_back({v, radius});
     };
+    // Knots of one radius have it exactly.
+    const auto add_step = [&](double from, double radius0, double radius1) {
+      if (radius0 == radius1) return;
+      const double grown = radius1 - radius0, extent = kTransition * std::abs(grown);
+      for (int i = 0; i <= kTransitionSteps; ++i) {
+        const double part = double(i) / kTransitionSteps;
+        const double radius = radius0 + grown * smooth_step(part);
+        add(from + extent * part, i == kTransitionSteps ? radius1 : radius);
+      }
+    };
     add(0, ends.radius0);
-    const double grown = e.radius - ends.radius0, shrunk = e.radius - ends.radius1;
-    for (int i = 0; grown > 0 && i <= kTransitionSteps; ++i) {
-      const double part = double(i) / kTransitionSteps;
-      add(ends.until0 + kTransition * grown * part, ends.radius0 + grown * smooth_step(part));
-    }
-    const double from = e.length - ends.until1 - kTransition * shrunk;
-    for (int i = 0; shrunk > 0 && i <= kTransitionSteps; ++i) {
-      const double part = double(i) / kTransitionSteps;
-      add(from + kTransition * shrunk * part, e.radius - shrunk * smooth_step(part));
-    }
+    add_step(ends.until0, ends.radius0, e.radius);
+    add_step(e.length - ends.until1 - kTransition * (e.radius - ends.radius1), e.radius,
+             ends.radius1);
     add(e.length, ends.radius1);
     return profile;
   }
