@@ -116,21 +116,28 @@ class Maker {
                    source.scale = instance_scale(record(index), source.place.linear);
                    source.radius = radii[i] = radius_of(index);
                  });
-    std::map<std::tuple<std::uint32_t, double, int, double>, std::size_t> shared;
+    std::map<std::tuple<std::uint32_t, double, int, double, int, std::size_t>, std::size_t> shared;
     for (std::uint32_t i = 0; i < radii.size(); ++i) {
       if (!(radii[i] > 0)) continue;
       const RoundingSettings& settings = *settings_of(i);
       Task task;
       task.record = i;
-      task.options = {radii[i], settings.edges, settings.min_angle, options_.detection,
+      task.options = {radii[i],
+                      settings.edges,
+                      settings.min_angle,
+                      options_.detection,
                       std::holds_alternative<AutoRadius>(settings.radius) ? TooLarge::leave_sharp
-                                                                          : TooLarge::error};
+                                                                          : TooLarge::error,
+                      settings.on_overlap,
+                      settings.rules};
       if (const RoundingSource* source = find_source(i)) task.result = source->rounding;
       task.scale = out_.sources[i].scale;
       if (task.scale) {
         task.options.radius /= *task.scale;
-        const auto key = std::tuple(record(i).mesh.index, task.options.radius, int(settings.edges),
-                                    settings.min_angle);
+        for (EdgeRule& rule : task.options.rules) rule.radius /= rule.is_part ? 1 : *task.scale;
+        const auto key =
+            std::tuple(record(i).mesh.index, task.options.radius, int(settings.edges),
+                       settings.min_angle, int(settings.on_overlap), number_of(settings.rules));
         const auto [at, is_new] = shared.try_emplace(key, tasks_.size());
         if (!is_new) {
           Task& same = tasks_[at->second];
@@ -144,6 +151,13 @@ class Maker {
     }
   }
 
+  // The same for equal rules.
+  std::size_t number_of(const std::vector<EdgeRule>& rules) {
+    const auto known = std::ranges::find(rules_, rules);
+    if (known == rules_.end()) rules_.push_back(rules);
+    return std::size_t(std::ranges::find(rules_, rules) - rules_.begin());
+  }
+
   void build(Task& task) const {
     const GeometryRecord& r = record(task.record);
     const Mesh& mesh = scene_.meshes[r.mesh.index];
@@ -155,8 +169,16 @@ class Maker {
       own = transformed_positions(mesh, {object.world_from_object.linear, {}});
       positions = own;
     }
-    task.result = std::make_shared<const Rounding>(
-        make_rounding({positions, triangles, mesh.sharp_edges}, task.options, place_of(object)));
+    MeshView view{positions, triangles, mesh.sharp_edges, mesh.edge_radii, mesh.positions};
+    std::vector<EdgeRadius> radii;
+    if (!task.scale && !mesh.edge_radii.empty()) {
+      radii = mesh.edge_radii;
+      const double scale = std::cbrt(std::abs(determinant(object.world_from_object.linear)));
+      for (EdgeRadius& edge : radii) edge.radius = float(scale * double(edge.radius));
+      view.edge_radii = radii;
+    }
+    task.result =
+        std::make_shared<const Rounding>(make_rounding(view, task.options, place_of(object)));
   }
 
   void attach(Task& task) {
@@ -222,6 +244,7 @@ class Maker {
   const SceneRounding* before_;
   SceneRounding out_;
   std::vector<Task> tasks_;
+  std::vector<std::vector<EdgeRule>> rules_;
 };
 
 Vec3d center_of(const Mesh& mesh, const Affine3d& m) {

@@ -79,7 +79,7 @@ class GrooveFinder {
     return a * (std::sin((1 - p.v) * angle) / sine) + b * (std::sin(p.v * angle) / sine);
   }
   [[nodiscard]] Vec3d point_at(const CreasePipe& pipe, PipePlace p) const {
-    return pipe.curve.at(p.u) + normal_at(pipe, p) * r_;
+    return pipe.curve.at(p.u) + normal_at(pipe, p) * pipe.curve.radius_at(p.u);
   }
   [[nodiscard]] bool is_covered(const CreasePipe& pipe, PipePlace p) const {
     return solid_.is_beneath(point_at(pipe, p));
@@ -93,7 +93,8 @@ class GrooveFinder {
       const Vec3d bend =
           (pipe.curve.center - pipe.curve.at(u)) / length_squared(pipe.curve.derivative(u));
       for (int k = 0; k <= kAcross; ++k) {
-        if (dot(bend, normal_at(pipe, {u, double(k) / kAcross})) * r_ > kFolds) return true;
+        if (dot(bend, normal_at(pipe, {u, double(k) / kAcross})) * pipe.curve.r0 > kFolds)
+          return true;
       }
     }
     return false;
@@ -144,7 +145,7 @@ class GrooveFinder {
     const bool is_line = pipe->curve.is_line;
     const double extent = (u1 - u0) * length(pipe->curve.a);
     const int steps = is_line ? std::max(1, int(std::ceil(extent / (kStep * r_))))
-                              : CreasePipe::steps_of(pipe->curve, r_);
+                              : CreasePipe::steps_of(pipe->curve);
     std::vector<double> us;
     for (int i = 0; i <= steps; ++i) us.push_back(u0 + (u1 - u0) * i / steps);
     if (is_line) return us;

@@ -28,6 +28,7 @@ struct Touch {
   int side = 0;  // of the surface: on it, before or beyond, or kHidden
   Vec3d c, n;
   CreaseWedge wedge;
+  double r = 0;
 
   [[nodiscard]] bool is_on() const { return exists && side == 0; }
 };
@@ -61,20 +62,25 @@ class OutlineFinder {
   }
 
  private:
-  [[nodiscard]] Vec3d place(const Touch& t) const { return t.c + t.n * r_; }
+  [[nodiscard]] Vec3d place(const Touch& t) const { return t.c + t.n * t.r; }
 
   [[nodiscard]] Touch touch_pipe(const CreasePipe& pipe, double u, double side) const {
-    Touch out{u, false, 0, pipe.curve.at(u), {}, pipe.wedge_at(u)};
+    Touch out{u, false, 0, pipe.curve.at(u), {}, pipe.wedge_at(u), pipe.curve.radius_at(u)};
     const Vec3d direction = normalize(pipe.curve.derivative(u));
     const Vec3d to_eye = eye_ - out.c;
-    const Vec3d w = to_eye - direction * dot(to_eye, direction);
+    const double along = dot(to_eye, direction);
+    const Vec3d w = to_eye - direction * along;
     const double distance = length(w);
-    if (!(distance > r_)) return out;
+    // Where balls grow, n leans back: n·T = −growth.
+    const double growth = pipe.curve.growth(), upright = std::sqrt(1 - growth * growth);
+    const double cosine = (out.r + growth * along) / (upright * distance);
+    if (!(std::abs(cosine) < 1)) return out;
     out.exists = true;
-    const double cosine = r_ / distance, sine = std::sqrt(1 - cosine * cosine);
+    const double sine = std::sqrt(1 - cosine * cosine);
     const Vec3d x = w / distance;
-    out.n = x * cosine + cross(direction, x) * (side * sine);
-    const Vec3d sum = out.wedge.a + out.wedge.b;
+    out.n = (x * cosine + cross(direction, x) * (side * sine)) * upright - direction * growth;
+    Vec3d sum = out.wedge.a + out.wedge.b;
+    sum = sum - direction * dot(sum, direction);
     const auto turn = [&](Vec3d d) {
       return std::atan2(dot(cross(sum, d), direction), dot(sum, d));
     };
@@ -91,15 +97,15 @@ class OutlineFinder {
     if (curve.is_line) return false;
     const Vec3d bend = (curve.center - t.c) / length_squared(curve.derivative(t.u));
     const double along = dot(normalize(place(t) - eye_), direction);
-    return r_ * dot(bend, t.n) >= 1 - along * along;
+    return t.r * dot(bend, t.n) >= 1 - along * along;
   }
 
   [[nodiscard]] Touch touch_middle(const CreasePipe& pipe, double u) const {
-    Touch out{u, false, 0, pipe.curve.at(u), {}, pipe.wedge_at(u)};
+    Touch out{u, false, 0, pipe.curve.at(u), {}, pipe.wedge_at(u), pipe.curve.radius_at(u)};
     const auto& [a, b] = out.wedge;
     if (dot(a, b) > kSmooth) return out;
     const Vec3d to_eye = eye_ - out.c;
-    out.exists = dot(a, to_eye) > r_ && dot(b, to_eye) > r_;
+    out.exists = dot(a, to_eye) > out.r && dot(b, to_eye) > out.r;
     out.n = normalize(a + b);
     return out;
   }
@@ -110,12 +116,13 @@ class OutlineFinder {
     const std::uint32_t index = pipe.balls[last ? 1 : 0];
     if (index == kNone) return;
     const CreaseBall& ball = solid_.shape().balls[index];
-    if (ball.sides.empty() || dot(ball.middle, eye_ - ball.center) <= r_) return;
+    if (ball.sides.empty() || dot(ball.middle, eye_ - ball.center) <= ball.radius) return;
     const Touch from = touch(last ? pipe.curve.u1 : pipe.curve.u0);
     if (!from.exists) return;
     Touch to = from;
     to.c = ball.center;
     to.n = ball.middle;
+    to.r = ball.radius;
     if (!solid_.is_beneath(place(to))) emit(from, to);
   }
 
@@ -130,6 +137,7 @@ class OutlineFinder {
         Touch t = first;
         t.u = first.u + (last.u - first.u) * part;
         t.c = first.c + (last.c - first.c) * part;
+        t.r = first.r + (last.r - first.r) * part;
         return t;
       };
       if (solid_.is_beneath(place(at(0.5 * (cuts[i - 1] + cuts[i]))))) continue;
@@ -175,7 +183,7 @@ class OutlineFinder {
 
   template <class TouchAt>
   void add_arc(const CreasePipe& pipe, const TouchAt& touch) {
-    follow(pipe.curve.u0, pipe.curve.u1, CreasePipe::steps_of(pipe.curve, r_), touch);
+    follow(pipe.curve.u0, pipe.curve.u1, CreasePipe::steps_of(pipe.curve), touch);
   }
 
   // Chords of the parts that are on the surface.
@@ -223,15 +231,15 @@ class OutlineFinder {
   void add_ball(const CreaseBall& ball) {
     const Vec3d to_eye = eye_ - ball.center;
     const double distance = length(to_eye);
-    if (!(distance > r_)) return;
-    const double cosine = r_ / distance, sine = std::sqrt(1 - cosine * cosine);
+    if (!(distance > ball.radius)) return;
+    const double cosine = ball.radius / distance, sine = std::sqrt(1 - cosine * cosine);
     const Vec3d z = to_eye / distance;
     const Vec3d x = normalize(std::abs(z.x) < 0.6 ? cross(z, {1, 0, 0}) : cross(z, {0, 1, 0}));
     const Vec3d y = cross(z, x);
     ball_ = &ball;
     const auto touch = [&](double angle) {
       const Vec3d n = z * cosine + x * (sine * std::cos(angle)) + y * (sine * std::sin(angle));
-      return Touch{angle, true, 0, ball.center, n, {}};
+      return Touch{angle, true, 0, ball.center, n, {}, ball.radius};
     };
     // Where the circle crosses a side, and between.
     std::vector<double> cuts;
@@ -291,7 +299,7 @@ class OutlineFinder {
     const double tangent = std::sqrt((1 - cosine) / std::max(1 + cosine, 1e-9));
     const Vec3d d = normalize(line.a - eye_);
     const double across = length(d - axis_ * dot(d, axis_));
-    return r_ * 2 * tangent / std::max(across, 1 / kFarthest);
+    return t.r * 2 * tangent / std::max(across, 1 / kFarthest);
   }
 
   struct Run {
@@ -324,7 +332,7 @@ std::vector<CreaseLine> find_crease_middles(const CreasedSolid& solid, Vec3d eye
 // turns back along it.
 std::vector<std::pair<double, double>> find_kept_parts(const CreasedSolid& solid,
                                                        const KeptEdge& edge) {
-  const double reach = solid.radius + 2 * solid.tolerance;
+  const double slack = 2 * solid.tolerance;
   const Vec3d along = edge.p1 - edge.p0;
   const double extent = length(along);
   const auto foot = [&](Vec3d x) { return dot(x - edge.p0, along) / (extent * extent); };
@@ -341,7 +349,8 @@ std::vector<std::pair<double, double>> find_kept_parts(const CreasedSolid& solid
     for (const double u : us) {
       const double at = foot(part.at(u));
       if (at <= 0 || at >= 1) continue;
-      if (length(part.at(u) - edge.p0 - along * at) <= reach) cuts.push_back(at);
+      if (length(part.at(u) - edge.p0 - along * at) <= part.radius_at(u) + slack)
+        cuts.push_back(at);
     }
   });
   std::ranges::sort(cuts);
@@ -349,9 +358,8 @@ std::vector<std::pair<double, double>> find_kept_parts(const CreasedSolid& solid
     if (solid.is_kept(y, edge.normal0, edge.region0)) return true;
     if (solid.is_kept(y, edge.normal1, edge.region1)) return true;
     bool kept = false;
-    solid.pipes.for_each_near(y, y, [&](const CreaseCurve& part) {
-      kept = kept || length(y - part.at(nearest_parameter(part, y))) <= reach;
-    });
+    solid.pipes.for_each_near(
+        y, y, [&](const CreaseCurve& part) { kept = kept || distance_to_balls(part, y) <= slack; });
     return kept;
   };
   const double least = kOnSurface * solid.radius / extent;

@@ -25,7 +25,7 @@ constexpr double kSlack = 1e-6;
 class ContactFinder {
  public:
   ContactFinder(const SolidSurface& surface, double radius, double tolerance)
-      : surface_(surface), most_(radius + 2 * tolerance) {
+      : surface_(surface), slack_(2 * tolerance) {
     // A triangle beside the one that is touched may be near enough in so different a direction.
     const double beside = 2 * std::sqrt(4 * tolerance / radius);
     same_ = std::clamp(beside, 1e-3, 0.1);
@@ -33,12 +33,13 @@ class ContactFinder {
 
   [[nodiscard]] double same() const { return same_; }
 
-  void add(Vec3d c, std::vector<Vec3d>& contacts) const {
+  void add(Vec3d c, double radius, std::vector<Vec3d>& contacts) const {
+    const double most = radius + slack_;
     std::vector<std::pair<double, Vec3d>> found;
-    surface_.for_each_near(c - Vec3d(most_), c + Vec3d(most_), [&](const SurfaceTriangle& t) {
+    surface_.for_each_near(c - Vec3d(most), c + Vec3d(most), [&](const SurfaceTriangle& t) {
       const Vec3d way = nearest_on_triangle(c, t) - c;
       const double distance = length(way);
-      if (distance > 0 && distance <= most_) found.emplace_back(distance, way / distance);
+      if (distance > 0 && distance <= most) found.emplace_back(distance, way / distance);
     });
     // The nearest of those in about one direction is what is touched.
     std::ranges::sort(found, {}, [](const auto& f) { return f.first; });
@@ -51,16 +52,17 @@ class ContactFinder {
 
  private:
   const SolidSurface& surface_;
-  double most_;
+  double slack_;
   double same_;
 };
 
-// The outermost of the contacts across a crease.
-std::optional<CreaseWedge> wedge_of(std::span<const Vec3d> contacts, Vec3d direction, double same) {
+// The outermost of the contacts across a crease whose balls grow so much of the way.
+std::optional<CreaseWedge> wedge_of(std::span<const Vec3d> contacts, Vec3d direction, double growth,
+                                    double same) {
   std::vector<Vec3d> across;
   Vec3d sum;
   for (const Vec3d d : contacts) {
-    if (std::abs(dot(d, direction)) > same) continue;
+    if (std::abs(dot(d, direction) + growth) > same) continue;
     across.push_back(d);
     sum += d;
   }
@@ -70,17 +72,18 @@ std::optional<CreaseWedge> wedge_of(std::span<const Vec3d> contacts, Vec3d direc
   return CreaseWedge{*first, *last};
 }
 
-CreasePipe make_pipe(const CreaseCurve& curve, double radius, const ContactFinder& finder) {
+CreasePipe make_pipe(const CreaseCurve& curve, const ContactFinder& finder) {
   CreasePipe pipe{curve, {}};
-  const int steps = curve.is_line ? 0 : CreasePipe::steps_of(curve, radius);
+  const int steps = curve.is_line ? 0 : CreasePipe::steps_of(curve);
   for (int i = 0; i <= steps; ++i) {
     // At the ends other features are touched, too.
     const double inside = std::clamp(double(i), 0.02, std::max(steps - 0.02, 0.02));
     const double part = steps == 0 ? 0.5 : inside / steps;
     const double u = curve.u0 + (curve.u1 - curve.u0) * part;
     std::vector<Vec3d> contacts;
-    finder.add(curve.at(u), contacts);
-    const auto wedge = wedge_of(contacts, normalize(curve.derivative(u)), finder.same());
+    finder.add(curve.at(u), curve.radius_at(u), contacts);
+    const auto wedge =
+        wedge_of(contacts, normalize(curve.derivative(u)), curve.growth(), finder.same());
     if (wedge) {
       pipe.wedges.push_back(*wedge);
     } else if (!pipe.wedges.empty()) {
@@ -127,12 +130,13 @@ std::vector<CreaseBall> make_balls(std::span<CreasePipe> pipes, double radius,
                                    const ContactFinder& finder) {
   struct End {
     Vec3d point;
+    double radius;
     std::uint32_t* ball;
   };
   std::vector<End> ends;
   for (CreasePipe& pipe : pipes) {
-    ends.push_back({pipe.curve.at(pipe.curve.u0), &pipe.balls[0]});
-    ends.push_back({pipe.curve.at(pipe.curve.u1), &pipe.balls[1]});
+    ends.push_back({pipe.curve.at(pipe.curve.u0), pipe.curve.r0, &pipe.balls[0]});
+    ends.push_back({pipe.curve.at(pipe.curve.u1), pipe.curve.r1, &pipe.balls[1]});
   }
   std::ranges::sort(ends, {}, [](const End& e) { return e.point.x; });
   const double same = kSameEnd * radius;
@@ -141,12 +145,12 @@ std::vector<CreaseBall> make_balls(std::span<CreasePipe> pipes, double radius,
   for (std::size_t i = 0; i < ends.size(); ++i) {
     if (taken[i]) continue;
     const Vec3d center = ends[i].point;
-    CreaseBall ball{center, {}, {}, {}};
+    CreaseBall ball{center, ends[i].radius, {}, {}, {}};
     std::vector<std::uint32_t*> links;
     for (std::size_t j = i; j < ends.size() && ends[j].point.x - center.x < same; ++j) {
       if (taken[j] || length(ends[j].point - center) >= same) continue;
       taken[j] = true;
-      finder.add(ends[j].point, ball.contacts);
+      finder.add(ends[j].point, ends[j].radius, ball.contacts);
       links.push_back(ends[j].ball);
     }
     if (!spans_volume(ball.contacts)) continue;
@@ -202,9 +206,9 @@ std::vector<CreaseCurve> without_doubles(std::span<const CreaseCurve> creases, d
 
 }  // namespace
 
-int CreasePipe::steps_of(const CreaseCurve& curve, double radius) {
+int CreasePipe::steps_of(const CreaseCurve& curve) {
   const double widest = std::max(length(curve.a), length(curve.b));
-  const double step = kArcStep * std::sqrt(std::min(1.0, radius / widest));
+  const double step = kArcStep * std::sqrt(std::min(1.0, curve.r0 / widest));
   return std::max(1, int(std::ceil((curve.u1 - curve.u0) / step)));
 }
 
@@ -229,7 +233,7 @@ CreaseShape make_crease_shape(const SolidSurface& surface, std::span<const Creas
   const std::vector<CreaseCurve> curves = without_doubles(join_pieces(creases), radius);
   shape.pipes =
       parallel_collect<CreasePipe>(curves.size(), kCurvesAtOnce, [&](std::size_t i, auto& list) {
-        CreasePipe pipe = make_pipe(curves[i], radius, finder);
+        CreasePipe pipe = make_pipe(curves[i], finder);
         if (!pipe.wedges.empty()) list.push_back(std::move(pipe));
       });
   shape.balls = make_balls(shape.pipes, radius, finder);

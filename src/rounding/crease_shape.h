@@ -33,11 +33,12 @@ struct CreasePipe {
 
   [[nodiscard]] CreaseWedge wedge_at(double u) const;
   // Steps in u whose chords lie within r / 1000 of the curve.
-  [[nodiscard]] static int steps_of(const CreaseCurve& curve, double radius);
+  [[nodiscard]] static int steps_of(const CreaseCurve& curve);
 };
 
 struct CreaseBall {
   Vec3d center;
+  double radius = 0;
   std::vector<Vec3d> contacts;  // directions
   std::vector<Vec3d> sides;     // n is spanned by the contacts where n·side ≥ 0 for all
   Vec3d middle;                 // direction
@@ -55,7 +56,7 @@ struct CreaseShape {
   std::vector<CreaseGroove> grooves;
 };
 
-// All but the grooves (crease_grooves.h). tolerance: crease_tolerance()
+// All but the grooves (crease_grooves.h). radius: the largest; tolerance: crease_tolerance()
 CreaseShape make_crease_shape(const SolidSurface& surface, std::span<const CreaseCurve> creases,
                               double radius, double tolerance);
 
