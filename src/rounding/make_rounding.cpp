@@ -14,9 +14,8 @@
 #include "rounding/crease_network.h"
 #include "rounding/edge_radii.h"
 #include "rounding/eroded_polyhedron.h"
-#include "rounding/make_creased.h"
+#include "rounding/exact_solids.h"
 #include "rounding/outside_mesh.h"
-#include "rounding/plain_lists.h"
 #include "rounding/rounding_data.h"
 #include "rounding/rounding_parts.h"
 
@@ -47,9 +46,7 @@ class RoundingMaker {
     sort_triangles_by_region();
     make_solids();
     for (std::uint32_t s = 0; s < data_->solids.size(); ++s) judge_shape(s);
-    make_creased_solids();
-    make_filled_solids();
-    list_plain_creases();
+    make_exact();
     leave_edges_without_radius();
     // A mesh of bevels has each edge of its own.
     const ShortEdges short_edges = keep_networks_ ? ShortEdges::leave_sharp : ShortEdges::skip;
@@ -218,38 +215,24 @@ class RoundingMaker {
     networks_[s] = std::move(network);
   }
 
-  // Of each shell that is no hollow: it and its hollows, if they are for a CreasedSolid. Whoever wants networks gets
-  // local ones.
-  [[nodiscard]] std::vector<std::vector<std::uint32_t>> shells_for_creases() const {
-    std::vector<std::vector<std::uint32_t>> solids;
-    if (keep_networks_ || options_.edges == RoundEdges::concave) return solids;
-    std::vector<std::vector<std::uint32_t>> hollows = hollows_of_shells();
-    for (std::uint32_t s = 0; s < data_->solids.size(); ++s) {
-      if (is_cavity(welded_.shells[s]) || !welded_.shells[s].closed) continue;
-      const bool is_convex = data_->solids[s].convex && hollows[s].empty();
-      if (is_convex && !has_own_radii(s)) continue;
-      hollows[s].insert(hollows[s].begin(), s);
-      solids.push_back(std::move(hollows[s]));
+  // Whoever wants networks gets local ones.
+  void make_exact() {
+    if (keep_networks_) return;
+    MadeExact made =
+        make_exact_solids({mesh_, options_, welded_, regions_, kinds_, radii_, triangle_begin_,
+                           triangles_, outside_ ? &*outside_ : nullptr},
+                          *data_);
+    bands_ = std::move(made.bands);
+    filled_edges_ = made.filled_edges;
+    for (const VariedCreases::Edge& e : made.clamped) {
+      add_clamped(e.half_edge, e.radius);
+      ++(e.radius > 0 ? clamped_ : left_in_creased_);
     }
-    return solids;
   }
 
-  template <class Visit>
-  void for_convex_edges(std::uint32_t s, const Visit& visit) const {
-    const Shell& shell = welded_.shells[s];
-    for (std::uint32_t i = 0; i < shell.triangle_count; ++i) {
-      const std::uint32_t t = welded_.triangles_by_shell[shell.first_triangle + i];
-      for (std::uint32_t h = 3 * t; h < 3 * t + 3; ++h) {
-        if (kinds_[h] == EdgeKind::convex && h < welded_.twin[h]) visit(h);
-      }
-    }
-  }
-  [[nodiscard]] bool has_own_radii(std::uint32_t s) const {
-    bool any = false;
-    if (!radii_.empty()) {
-      for_convex_edges(s, [&](std::uint32_t h) { any = any || radii_[h] != options_.radius; });
-    }
-    return any;
+  void add_clamped(std::uint32_t half_edge, double radius) {
+    data_->report.clamped.push_back({Vec3d(welded_.vertices[welded_.origin(half_edge)]),
+                                     Vec3d(welded_.vertices[welded_.target(half_edge)]), radius});
   }
 
   // Edges without a radius stay sharp everywhere; the others of what isn't a creased solid have the options' radius.
@@ -257,7 +240,7 @@ class RoundingMaker {
     if (radii_.empty()) return;
     for (std::uint32_t s = 0; s < data_->solids.size(); ++s) {
       const bool creased = data_->solids[s].creased != kNone;
-      for_convex_edges(s, [&](std::uint32_t h) {
+      for_convex_edges(welded_, kinds_, s, [&](std::uint32_t h) {
         if (radii_[h] == 0) {
           kinds_[h] = kinds_[welded_.twin[h]] = EdgeKind::smooth;
           ++sharp_by_rule_;
@@ -267,149 +250,6 @@ class RoundingMaker {
         }
       });
     }
-  }
-
-  // A hollow is of the smallest shell around it.
-  [[nodiscard]] std::vector<std::vector<std::uint32_t>> hollows_of_shells() const {
-    const std::vector<Shell>& shells = welded_.shells;
-    std::vector<std::vector<std::uint32_t>> hollows(shells.size());
-    for (std::uint32_t s = 0; s < shells.size(); ++s) {
-      if (!is_cavity(shells[s])) continue;
-      std::uint32_t outer = kNone;
-      for (std::uint32_t o = 0; o < shells.size(); ++o) {
-        if (!can_hold(shells[o], shells[s])) continue;
-        if (outer == kNone || std::abs(shells[o].volume) < std::abs(shells[outer].volume))
-          outer = o;
-      }
-      if (outer != kNone) hollows[outer].push_back(s);
-    }
-    return hollows;
-  }
-
-  void make_creased_solids() {
-    const std::vector<std::vector<std::uint32_t>> wanted = shells_for_creases();
-    const CreasedInput input{mesh_, welded_, regions_, kinds_, options_.radius, options_.on_overlap,
-                             radii_};
-    std::vector<std::optional<MadeCreased>> made(wanted.size());
-    parallel_for(wanted.size(), {},
-                 [&](std::size_t i) { made[i] = make_creased_solid(input, wanted[i]); });
-    for (std::size_t i = 0; i < wanted.size(); ++i) {
-      if (!made[i]) continue;
-      bands_.insert(bands_.end(), made[i]->bands.begin(), made[i]->bands.end());
-      for (const std::uint32_t s : wanted[i]) join(s, wanted[i].front(), made[i]->solid.radius);
-      for (const VariedCreases::Edge& e : made[i]->clamped) {
-        add_clamped(e.half_edge, e.radius);
-        ++(e.radius > 0 ? clamped_ : left_in_creased_);
-      }
-      data_->creased.push_back(std::make_unique<const CreasedSolid>(std::move(made[i]->solid)));
-      plain_.push_back({wanted[i].front(), false, std::move(made[i]->plain)});
-    }
-  }
-
-  void add_clamped(std::uint32_t half_edge, double radius) {
-    data_->report.clamped.push_back({Vec3d(welded_.vertices[welded_.origin(half_edge)]),
-                                     Vec3d(welded_.vertices[welded_.target(half_edge)]), radius});
-  }
-
-  // Makes a shell part of the creased solid to come, in coordinates relative to the outer one's centre.
-  void join(std::uint32_t s, std::uint32_t outer, double radius) {
-    Solid& solid = data_->solids[s];
-    solid.creased = std::uint32_t(data_->creased.size());
-    solid.radius = radius;
-    solid.convex = solid.exact = false;
-    if (s == outer) return;
-    solid.hollow = true;
-    const Vec3d shift = solid.center - data_->solids[outer].center;
-    for (std::uint32_t f = solid.first_face; f < solid.first_face + solid.face_count; ++f) {
-      data_->faces[f].d += dot(regions_.planes[f].normal, shift);
-    }
-    solid.center = data_->solids[outer].center;
-    solid.size = data_->solids[outer].size;
-  }
-
-  // The space outside solids, rounded along its convex edges.
-  void make_filled_solids() {
-    if (keep_networks_ || !outside_) return;
-    std::vector<std::uint32_t> wanted;
-    for (std::uint32_t s = 0; s < data_->solids.size(); ++s) {
-      const Shell& shell = welded_.shells[s];
-      if (shell.closed && !is_cavity(shell) && concave_edges_of(s) > 0) wanted.push_back(s);
-    }
-    const CreasedInput input{mesh_,
-                             outside_->welded,
-                             outside_->regions,
-                             outside_->kinds,
-                             options_.radius,
-                             OnOverlap::report,
-                             {},
-                             true};
-    std::vector<std::optional<MadeCreased>> made(wanted.size());
-    parallel_for(wanted.size(), {}, [&](std::size_t i) {
-      made[i] = make_creased_solid(input, std::span(wanted).subspan(i, 1));
-    });
-    for (std::size_t i = 0; i < wanted.size(); ++i) {
-      if (!made[i]) continue;
-      covers_.insert(covers_.end(), made[i]->bands.begin(), made[i]->bands.end());
-      plain_.push_back({wanted[i], true, std::move(made[i]->plain)});
-      fill(wanted[i], std::move(made[i]->solid), plain_.back().creases);
-    }
-    bands_.insert(bands_.end(), covers_.begin(), covers_.end());
-  }
-
-  // What rays meet along most of the edges of creased and filled solids.
-  void list_plain_creases() {
-    if (plain_.empty()) return;
-    PlainLists lists(mesh_, covers_);
-    for (const SolidCreases& of : plain_) {
-      const Solid& solid = data_->solids[of.solid];
-      lists.add(
-          of.is_fillet ? data_->filled[solid.filled]->outside : *data_->creased[solid.creased],
-          solid.center, of.creases, of.is_fillet);
-    }
-    lists.put_into(*data_);
-  }
-
-  void fill(std::uint32_t s, CreasedSolid outside, std::span<const PlainCrease> plain) {
-    Solid& solid = data_->solids[s];
-    solid.filled = std::uint32_t(data_->filled.size());
-    data_->filled.push_back(std::make_unique<const FilledSolid>(std::move(outside), plain));
-    const std::uint64_t edges = concave_edges_of(s);
-    filled_edges_ += edges;
-    data_->report.rounded_edges += edges;
-    const FilledSolid& filled = *data_->filled.back();
-    for (std::uint32_t i = 0; i < filled.fillets.part_count(); ++i) {
-      const Box box = filled.fillets.box_of(i);
-      const std::uint32_t triangle = triangle_near(filled.outside, (box.low + box.high) * 0.5);
-      if (triangle == kNone) continue;
-      data_->fillet_boxes.push_back({box.low + solid.center, box.high + solid.center, triangle});
-      data_->fillet_parts.push_back({s, i});
-    }
-  }
-
-  [[nodiscard]] std::uint64_t concave_edges_of(std::uint32_t s) const {
-    const Shell& shell = welded_.shells[s];
-    std::uint64_t count = 0;
-    for (std::uint32_t i = 0; i < shell.triangle_count; ++i) {
-      const std::uint32_t t = welded_.triangles_by_shell[shell.first_triangle + i];
-      for (std::uint32_t h = 3 * t; h < 3 * t + 3; ++h) {
-        count += kinds_[h] == EdgeKind::concave && h < welded_.twin[h] ? 1 : 0;
-      }
-    }
-    return count;
-  }
-
-  // One of the caller's, of the nearest face.
-  [[nodiscard]] std::uint32_t triangle_near(const CreasedSolid& solid, Vec3d x) const {
-    std::uint32_t region = kNone;
-    double least = INFINITY;
-    const Vec3d reach(2 * solid.radius);
-    solid.surface.for_each_near(x - reach, x + reach, [&](const SurfaceTriangle& t) {
-      const double distance = length(x - nearest_on_triangle(x, t));
-      if (distance >= least || triangle_begin_[t.region] == triangle_begin_[t.region + 1]) return;
-      least = distance;
-      region = t.region;
-    });
-    return region == kNone ? kNone : triangles_[triangle_begin_[region]];
   }
 
   [[nodiscard]] std::span<const Plane> planes_of(const Solid& solid) const {
@@ -650,13 +490,7 @@ class RoundingMaker {
   std::vector<double> radii_;  // per half-edge, of convex ones; empty: all have the options'
   std::optional<OutsideMesh> outside_;  // if concave edges are to be rounded, and there are any
   std::vector<std::uint32_t> triangle_begin_, triangles_;
-  std::vector<TriangleBand> bands_, covers_;  // covers: those of fillets
-  struct SolidCreases {
-    std::uint32_t solid;
-    bool is_fillet;
-    std::vector<PlainCrease> creases;
-  };
-  std::vector<SolidCreases> plain_;
+  std::vector<TriangleBand> bands_;
   std::vector<std::uint32_t> walls_;
   bool keep_networks_ = false;
   std::vector<ShellNetwork> networks_;

@@ -6,6 +6,7 @@
 #include <limits>
 #include <span>
 
+#include "rounding/creased_hit.h"
 #include "rounding/rounding_data.h"
 #include "rounding/walk.h"
 
@@ -18,14 +19,6 @@ constexpr double kOnSurface = 1e-7;
 constexpr double kGrazing = 1e-3;
 // How far above the faces of an arc other faces lie that go on smoothly from them, relative to the radius.
 constexpr double kSmoothHeight = 0.3;
-
-struct FaceHit {
-  std::uint32_t face;
-  Vec3d direction;  // unit
-  double scale;     // length of the ray's direction
-  double t;         // refined
-  Vec3d x;          // relative to the solid's centre
-};
 
 FaceHit locate(const Rounding::Data& data, const Ray& ray, const MeshHit& hit) {
   FaceHit at{};
@@ -207,171 +200,6 @@ std::optional<Place> detect_by_tree(const Rounding::Data& data, const Solid& sol
   return place_of(data, solid, deepest->arc, face_index, x);
 }
 
-// One solid's rounding, whatever its shape, as hits on its mesh need it. Either part may be missing.
-class CreasedHit {
- public:
-  CreasedHit(const Rounding::Data& data, const Solid& solid, const FaceHit& at, RayStart start)
-      : data_(data),
-        solid_(solid),
-        at_(at),
-        start_(start),
-        normal_(data.faces[at.face].normal),
-        entering_(dot(normal_, at.direction) < 0),
-        inner_(solid.creased == kNone ? nullptr : data.creased[solid.creased].get()),
-        filled_(solid.filled == kNone ? nullptr : data.filled[solid.filled].get()) {}
-
-  // Most hits beside edges end here: those beside a plain stretch of a crease. Nothing: resolve() decides.
-  [[nodiscard]] std::optional<Resolution> settle_plainly(const MeshHit& hit) const {
-    for (const std::uint32_t index : plain_creases_on(data_, hit.triangle)) {
-      const PlainCrease& crease = data_.plain[index];
-      const CreasedSolid* const solid = crease.is_fillet ? &filled_->outside : inner_;
-      const bool backwards = entering_ == crease.is_fillet;
-      const Vec3d direction = backwards ? -at_.direction : at_.direction;
-      const std::optional<PlainCrossing> crossing =
-          cross_plainly(crease, *solid, at_.face, {at_.x, direction});
-      if (!crossing) continue;
-      const double along = crossing->t / at_.scale;
-      const double t = backwards ? at_.t - along : at_.t + along;
-      if (crease.is_fillet) return onto_fillet(*crossing, t);
-      return beside_crease(*crossing, t);
-    }
-    return std::nullopt;
-  }
-
-  // Nothing: the local network decides.
-  [[nodiscard]] std::optional<Resolution> resolve(const Ray& ray) const {
-    // From a local rounding's void: the solid is closed, and its inside is not met.
-    if (inner_ == nullptr && !entering_ && start_ == RayStart::outside) {
-      return make(Resolution::Outcome::passed, at_.t, normal_, Feature::face);
-    }
-    const bool covered = is_covered(at_.x, at_.face);
-    const bool kept = inner_ == nullptr || is_kept(at_.x, at_.face);
-    if (covered && (entering_ || kept)) return through_fillet(kept);
-    if (inner_ == nullptr) return std::nullopt;
-    if (!entering_ && start_ == RayStart::outside) return out_of_void(ray, covered);
-    if (kept) return stay();
-    return entering_ ? into_void() : from_inside();
-  }
-
- private:
-  [[nodiscard]] const Face& face() const { return data_.faces[at_.face]; }
-
-  [[nodiscard]] bool is_kept(Vec3d x, std::uint32_t face) const {
-    return inner_->is_kept(x, Vec3d(data_.faces[face].normal), face);
-  }
-  [[nodiscard]] bool leaves_void(Vec3d direction, double end, std::uint32_t region) const {
-    return inner_->is_through_material(at_.x, at_.face, direction, end, region);
-  }
-  [[nodiscard]] Resolution stay() const {
-    return make(Resolution::Outcome::kept, at_.t, normal_, Feature::face);
-  }
-
-  // Whether a fillet lies on the face.
-  [[nodiscard]] bool is_covered(Vec3d x, std::uint32_t face) const {
-    return filled_ != nullptr &&
-           !filled_->outside.is_kept(x, -Vec3d(data_.faces[face].normal), face);
-  }
-
-  [[nodiscard]] Resolution make(Resolution::Outcome outcome, double t, Vec3d normal,
-                                Feature feature) const {
-    Resolution out;
-    out.outcome = outcome;
-    out.hit = {t, normal, feature};
-    if (feature == Feature::edge || feature == Feature::corner) out.hit.solid = face().solid;
-    return out;
-  }
-  static Feature feature_of(const PipeHit& met) {
-    return met.at_end ? Feature::corner : Feature::edge;
-  }
-
-  // From outside into a fillet, or from a solid whose convex edges stay sharp out of one.
-  [[nodiscard]] std::optional<Resolution> onto_fillet(const PlainCrossing& crossing,
-                                                      double t) const {
-    const bool leaves_void = !entering_ && (inner_ != nullptr || start_ == RayStart::outside);
-    const bool is_ahead = t * at_.scale > filled_->outside.tolerance;
-    if (leaves_void || !is_ahead || !crossing.normal) return std::nullopt;
-    return make(Resolution::Outcome::moved, t, -*crossing.normal, Feature::fillet);
-  }
-
-  // t: where the pipe is met, or the void ends.
-  [[nodiscard]] std::optional<Resolution> beside_crease(const PlainCrossing& crossing,
-                                                        double t) const {
-    if (!entering_ && start_ == RayStart::outside) {
-      // It began in the void, or it is not known how it came there.
-      if (t * at_.scale > inner_->tolerance) return std::nullopt;
-      return make(Resolution::Outcome::passed, at_.t, normal_, Feature::face);
-    }
-    if (crossing.normal)
-      return make(Resolution::Outcome::moved, t, *crossing.normal, Feature::edge);
-    return make(Resolution::Outcome::passed, at_.t, normal_, Feature::face);
-  }
-
-  // From the fillet into the solid, or the other way.
-  [[nodiscard]] Resolution through_fillet(bool kept) const {
-    const std::optional<PipeHit> met =
-        filled_->outside.cross_void(at_.x, entering_ ? -at_.direction : at_.direction).met;
-    const double along = met ? met->t / at_.scale : 0;
-    const double t = entering_ ? at_.t - along : at_.t + along;
-    if (met && t >= 0) return make(Resolution::Outcome::moved, t, -met->normal, Feature::fillet);
-    if (entering_ && start_ == RayStart::outside) {
-      // From the fillet's far side into the void, or, by rounding errors, from its surface: then the face stands.
-      return kept ? stay() : into_void();
-    }
-    if (!kept) return make(Resolution::Outcome::moved, at_.t, -normal_, Feature::fillet);
-    return make(Resolution::Outcome::passed, at_.t, normal_, Feature::fillet);
-  }
-
-  [[nodiscard]] Resolution out_of_void(const Ray& ray, bool covered) const {
-    const Vec3d origin = ray.origin - solid_.center;
-    if (const auto met = inner_->cross_void(origin, at_.direction).met) {
-      return make(Resolution::Outcome::moved, met->t / at_.scale, met->normal, feature_of(*met));
-    }
-    // Where the fillet has no thickness, a ray from its surface may start behind the face.
-    if (covered && at_.t * at_.scale > inner_->tolerance) {
-      return make(Resolution::Outcome::moved, at_.t, -normal_, Feature::fillet);
-    }
-    return make(Resolution::Outcome::passed, at_.t, normal_, Feature::face);
-  }
-
-  // Beyond the void there may be a fillet.
-  [[nodiscard]] Resolution into_void() const {
-    const auto [met, exit] = inner_->cross_void(at_.x, at_.direction);
-    if (met) {
-      if (leaves_void(at_.direction, met->t, kNone)) return stay();
-      return make(Resolution::Outcome::moved, at_.t + met->t / at_.scale, met->normal,
-                  feature_of(*met));
-    }
-    if (exit.region != kNone && is_covered(at_.x + at_.direction * exit.t, exit.region)) {
-      return make(Resolution::Outcome::moved, at_.t + exit.t / at_.scale,
-                  -Vec3d(data_.faces[exit.region].normal), Feature::fillet);
-    }
-    if (exit.region != kNone && leaves_void(at_.direction, exit.t, exit.region)) return stay();
-    return make(Resolution::Outcome::passed, at_.t, normal_, Feature::face);
-  }
-
-  // Looked at backwards.
-  [[nodiscard]] Resolution from_inside() const {
-    const auto [met, exit] = inner_->cross_void(at_.x, -at_.direction);
-    if (met && leaves_void(-at_.direction, met->t, kNone)) return stay();
-    const double before = std::min(exit.t, at_.t * at_.scale);
-    if (!met && start_ == RayStart::inside && leaves_void(-at_.direction, before, exit.region)) {
-      return stay();
-    }
-    if (!met) return make(Resolution::Outcome::passed, at_.t, normal_, Feature::face);
-    return make(Resolution::Outcome::moved, at_.t - met->t / at_.scale, met->normal,
-                feature_of(*met));
-  }
-
-  const Rounding::Data& data_;
-  const Solid& solid_;
-  const FaceHit& at_;
-  RayStart start_;
-  Vec3d normal_;
-  bool entering_;
-  const CreasedSolid* inner_;
-  const FilledSolid* filled_;
-};
-
 std::optional<EdgeBlend> blend_of_creased(const Rounding::Data& data, const RoundedHit& hit,
                                           Vec3d position) {
   const Solid& solid = data.solids[hit.solid];
@@ -442,9 +270,7 @@ Resolution Rounding::resolve(const Ray& ray, const MeshHit& hit, RayStart start)
   }
   const FaceHit at = locate(*data_, ray, hit);
   if (solid.creased != kNone || solid.filled != kNone) {
-    const CreasedHit creased(*data_, solid, at, start);
-    std::optional<Resolution> found = creased.settle_plainly(hit);
-    if (!found) found = creased.resolve(ray);
+    const auto found = resolve_creased(*data_, solid, {at, ray, hit, start});
     if (found) return *found;
   }
   out.hit = {at.t, Vec3d(face.normal)};

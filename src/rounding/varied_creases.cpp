@@ -13,7 +13,7 @@
 namespace arris {
 namespace {
 
-constexpr int kTransitionSteps = 6;
+constexpr int kTransitionSteps = 16;
 // The length of a transition, in what the radius grows by: a smooth step is steepest by 0.75 then, and balls whose
 // radius grew as fast as they move would have no cone.
 constexpr double kTransition = 2;

@@ -189,12 +189,16 @@ bool is_inside(const oracle::CreasedCase& c, Vec3d eye) {
   return oracle::intersect_mesh({eye, any}, c.mesh.view()).size() % 2 == 1;
 }
 
-TEST(RoundedOutline, every_jump_of_a_picture_of_mixed_corners_is_an_edge) {
+// rules_of: what a solid's edges have for radii, but the case's own.
+template <class RulesOf>
+void expect_edges_at_jumps(const RulesOf& rules_of) {
   oracle::Random rng(21);
   std::size_t jumps = 0, missed = 0, floating = 0;
   std::string examples;
   for (const oracle::CreasedCase& c : oracle::make_creased_cases()) {
-    const auto scene = prepare_scene(scene_of(c));
+    Scene unprepared = scene_of(c);
+    unprepared.objects[0].rounding->rules = rules_of(c);
+    const auto scene = prepare_scene(std::move(unprepared));
     const EdgeObjects objects(*scene, 1);
     std::size_t of_case = 0, of_case_missed = 0, of_case_floating = 0;
     for (int i = 0; i < 12; ++i) {
@@ -237,6 +241,28 @@ TEST(RoundedOutline, every_jump_of_a_picture_of_mixed_corners_is_an_edge) {
   EXPECT_GT(jumps, 2000U);
   EXPECT_EQ(missed, 0U) << examples;
   EXPECT_EQ(floating, 0U) << examples;
+}
+
+TEST(RoundedOutline, every_jump_of_a_picture_of_mixed_corners_is_an_edge) {
+  expect_edges_at_jumps([](const oracle::CreasedCase&) { return std::vector<EdgeRule>(); });
+}
+
+TEST(RoundedOutline, every_jump_is_an_edge_where_edges_have_radii_of_their_own) {
+  oracle::Random rng(4);
+  expect_edges_at_jumps([&](const oracle::CreasedCase& c) {
+    std::vector<EdgeRule> rules;
+    for (const double part : {0.0, 0.5, 1.2}) {
+      const auto& positions = c.mesh.positions;
+      const Vec3d corner(
+          positions[std::size_t(oracle::uniform_int(rng, 0, int(positions.size()) - 1))]);
+      EdgeRule rule;
+      rule.radius = part;
+      rule.is_part = true;
+      rule.box = {corner - Vec3d(1.1), corner + Vec3d(1.1)};
+      rules.push_back(rule);
+    }
+    return rules;
+  });
 }
 
 }  // namespace

@@ -62,7 +62,7 @@ RoundedBox make_box(Vec3d half, Random& rng, const std::vector<double>& radii) {
 }
 
 // The definition, by itself: at both ends the smallest radius of the corner for 1.25 of it, then a smooth step to the
-// edge's own of twice the length by which it grows, cut into six.
+// edge's own of twice the length by which it grows, cut into 16.
 double radius_along(const RoundedBox& box, const BoxEdge& edge, double v) {
   const double extent = length(edge.p1 - edge.p0);
   const auto corner_radius = [&](Vec3d p) {
@@ -77,10 +77,10 @@ double radius_along(const RoundedBox& box, const BoxEdge& edge, double v) {
   const double least = corner_radius(is_near_p1 ? edge.p1 : edge.p0);
   const double grown = edge.radius - least;
   const double at = grown > 0 ? (from_end - 1.25 * least) / (2 * grown) : 1;
-  const double step = std::clamp(at, 0.0, 1.0) * 6;
+  const double step = std::clamp(at, 0.0, 1.0) * 16;
   const auto smooth = [](double x) { return x * x * (3 - 2 * x); };
-  const double low = std::floor(std::min(step, 5.999999));
-  const double part = smooth(low / 6) + (smooth((low + 1) / 6) - smooth(low / 6)) * (step - low);
+  const double low = std::floor(std::min(step, 15.999999));
+  const double part = smooth(low / 16) + (smooth((low + 1) / 16) - smooth(low / 16)) * (step - low);
   return least + grown * part;
 }
 
