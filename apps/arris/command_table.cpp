@@ -19,6 +19,10 @@ OptionGroup rounding_group(const std::string& default_radius) {
         "which edges (default: the file's, else convex); concave ones get fillets where the solid "
         "is "
         "closed, and a note counts those that stay sharp"},
+       {"--round-on-overlap", "report|clamp",
+        "edges beside which the radius has no room; report: they stay sharp and are reported; "
+        "clamp: "
+        "they get a smaller one (default: the file's, else report)"},
        {"--round-min-angle", "DEG",
         "edges that turn by less are part of a smooth surface (default: the file's, else 30); STEP "
         "files say themselves which edges are sharp"},

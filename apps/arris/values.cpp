@@ -191,7 +191,8 @@ int threads_of(const Arguments& arguments) {
 }
 
 bool has_rounding_options(const Arguments& arguments) {
-  for (const char* option : {"--round", "--round-edges", "--round-min-angle", "--round-method"}) {
+  for (const char* option :
+       {"--round", "--round-edges", "--round-on-overlap", "--round-min-angle", "--round-method"}) {
     if (arguments.has(option)) return true;
   }
   return false;
@@ -221,6 +222,10 @@ RoundingSettings with_rounding_options(RoundingSettings settings, const Argument
   if (const auto given = find_given(arguments, "--round-edges")) {
     constexpr RoundEdges kEdges[] = {RoundEdges::convex, RoundEdges::concave, RoundEdges::both};
     settings.edges = kEdges[parse_choice(*given, {"convex", "concave", "both"})];
+  }
+  if (const auto given = find_given(arguments, "--round-on-overlap")) {
+    constexpr OnOverlap kOnOverlap[] = {OnOverlap::report, OnOverlap::clamp};
+    settings.on_overlap = kOnOverlap[parse_choice(*given, {"report", "clamp"})];
   }
   if (const auto given = find_given(arguments, "--round-min-angle")) {
     settings.min_angle = radians(parse_real(*given, {0, 180}));

@@ -171,8 +171,9 @@ struct Apply {
     rounding.radius = m.radius.value_or(rounding.radius);
     rounding.edges = m.edges.value_or(rounding.edges);
     rounding.min_angle = m.min_angle.value_or(rounding.min_angle);
-    for (ObjectEdit& object : edits.objects) {
-      if (object.has_edited_radius) set_radius(object, object.rounding->radius);
+    for (std::size_t id = 0; id < edits.objects.size(); ++id) {
+      const ObjectEdit& object = edits.objects[id];
+      if (object.has_edited_radius) set_radius(id, object.rounding->radius);
     }
   }
   void operator()(const SetObject& m) const {
@@ -183,7 +184,7 @@ struct Apply {
     if (!m.radius) return;
     object.has_edited_radius = m.radius->has_value();
     object.rounding.reset();
-    if (*m.radius) set_radius(object, **m.radius);
+    if (*m.radius) set_radius(m.id, **m.radius);
   }
   void operator()(const Isolate& m) const {
     if (m.id) check_object(model, *m.id);
@@ -223,10 +224,12 @@ struct Apply {
     edits.size = size;
     fit_camera(model, edits);
   }
-  // The radius may be that of the object itself.
-  void set_radius(ObjectEdit& object, Radius radius) const {
-    object.rounding = edits.rounding;
-    object.rounding->radius = radius;
+  // Rules that the file gives the object alone stay with it.
+  void set_radius(std::size_t id, Radius radius) const {
+    RoundingSettings rounding = edits.rounding;
+    rounding.radius = radius;
+    if (const auto& own = model.scene.objects[id].rounding) rounding.rules = own->rules;
+    edits.objects[id].rounding = rounding;
   }
 };
 

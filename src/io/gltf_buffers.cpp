@@ -77,6 +77,9 @@ void check_type(const GltfAccessor& accessor, GltfElement wanted, const std::str
   if (wanted == GltfElement::index && !is_index_type(accessor.component)) {
     fail(where, "indices must be unsigned integers");
   }
+  if (wanted == GltfElement::scalar && accessor.component != GltfComponent::f32) {
+    fail(where, "the values must be floats (componentType 5126)");
+  }
 }
 
 // `count` elements of `element_bytes`, `stride` apart, from `offset` on.

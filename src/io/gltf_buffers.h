@@ -57,7 +57,7 @@ struct GltfSource {
   std::string where;
 };
 
-enum class GltfElement : std::uint8_t { index, vec2, vec3 };
+enum class GltfElement : std::uint8_t { index, scalar, vec2, vec3 };
 
 class ElementReader {
  public:
@@ -70,6 +70,7 @@ class ElementReader {
     return {number(i, 0), number(i, 1), number(i, 2)};
   }
   [[nodiscard]] Vec2f vec2(std::uint64_t i) const { return {number(i, 0), number(i, 1)}; }
+  [[nodiscard]] float scalar(std::uint64_t i) const { return number(i, 0); }
   [[nodiscard]] std::uint32_t index(std::uint64_t i) const;
 
  private:

@@ -219,6 +219,7 @@ GltfPrimitive parse_primitive(const JsonValue& value, const GltfDocument& docume
                               accessor_count, "accessors")) {
     primitive.uv_sets.push_back(*uv);
   }
+  primitive.radius = attributes.index("_ARRIS_RADIUS", accessor_count, "accessors");
   primitive.indices = value.index("indices", accessor_count, "accessors");
   primitive.material = value.index("material", document.materials.size(), "materials");
   return primitive;

@@ -95,7 +95,8 @@ enum class GltfMode : std::uint8_t { points, lines, triangles, triangle_strip, t
 struct GltfPrimitive {
   std::uint32_t position = 0;
   std::optional<std::uint32_t> normal;
-  std::vector<std::uint32_t> uv_sets;  // TEXCOORD_0, 1, …: accessors
+  std::vector<std::uint32_t> uv_sets;   // TEXCOORD_0, 1, …: accessors
+  std::optional<std::uint32_t> radius;  // _ARRIS_RADIUS
   std::optional<std::uint32_t> indices;
   std::optional<std::uint32_t> material;
   GltfMode mode = GltfMode::triangles;

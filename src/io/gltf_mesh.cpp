@@ -6,12 +6,15 @@
 #include <limits>
 
 #include "arris/error.h"
+#include "io/edge_radii.h"
 
 namespace arris {
 namespace {
 
 // What one vertex and its share of a triangle take in memory, rounded up.
 constexpr std::uint64_t kBytesPerCorner = 64;
+// The same of radii of edges.
+constexpr std::uint64_t kRadiusBytesPerCorner = 32;
 
 Vec2f apply(const GltfUvTransform& transform, Vec2f uv) {
   const double c = std::cos(transform.rotation), s = std::sin(transform.rotation);
@@ -61,7 +64,7 @@ std::vector<std::array<std::uint64_t, 3>> list_triangles(GltfMode mode, std::uin
 
 struct PrimitiveReaders {
   ElementReader position;
-  std::optional<ElementReader> normal, uv, indices;
+  std::optional<ElementReader> normal, uv, radius, indices;
   GltfUvTransform uv_transform;
   std::string where;
   GltfMode mode = GltfMode::triangles;
@@ -116,6 +119,7 @@ class MeshBuilder {
           primitive.material.value_or(std::uint32_t(source_.document.materials.size()))};
       mesh.triangle_materials.resize(mesh.triangles.size(), material);
     }
+    mesh.edge_radii = make_edge_radii(mesh);
     return mesh;
   }
 
@@ -134,6 +138,7 @@ class MeshBuilder {
   PrimitiveReaders open(const GltfPrimitive& primitive, std::string where) {
     const GltfSource source{source_.document, source_.buffers, source_.budget, where};
     PrimitiveReaders readers{make_element_reader(source, primitive.position, GltfElement::vec3),
+                             {},
                              {},
                              {},
                              {},
@@ -157,6 +162,8 @@ class MeshBuilder {
     } else if (uv_choice(primitive).needed) {
       ++lacking_uvs_;
     }
+    if (primitive.radius)
+      readers.radius = attribute(*primitive.radius, GltfElement::scalar, "_ARRIS_RADIUS");
     if (primitive.indices) {
       readers.indices = make_element_reader(source, *primitive.indices, GltfElement::index);
     }
@@ -167,6 +174,7 @@ class MeshBuilder {
     const std::uint64_t corners =
         readers.indices ? readers.indices->count() : readers.position.count();
     source_.budget.charge(corners, kBytesPerCorner);
+    if (readers.radius) source_.budget.charge(corners, kRadiusBytesPerCorner);
     if (mesh.positions.size() + corners >= std::numeric_limits<std::uint32_t>::max()) {
       throw Error(Error::Kind::input, readers.where,
                   "the mesh has more than 4,294,967,294 vertices");
@@ -213,6 +221,7 @@ class MeshBuilder {
       mesh.normals.push_back(readers.normal->vec3(vertex));
     }
     if (readers.uv) append_uv(readers, vertex, mesh);
+    if (readers.radius) append_radius(readers, vertex, mesh);
     return seen.number;
   }
 
@@ -224,6 +233,31 @@ class MeshBuilder {
     }
     mesh.uvs.resize(mesh.positions.size() - 1);
     mesh.uvs.push_back(uv);
+  }
+
+  void append_radius(const PrimitiveReaders& readers, std::uint64_t vertex, const Mesh& mesh) {
+    const float radius = readers.radius->scalar(vertex);
+    if (std::isinf(radius)) {
+      throw Error(Error::Kind::input, readers.where,
+                  fmt::format("the _ARRIS_RADIUS of vertex {} is infinite; use a negative number "
+                              "where there is none",
+                              vertex));
+    }
+    vertex_radii_.resize(mesh.positions.size() - 1, EdgeRadii::kNone);
+    vertex_radii_.push_back(radius);
+  }
+
+  // Takes the vertices' radii.
+  std::vector<EdgeRadius> make_edge_radii(const Mesh& mesh) {
+    EdgeRadii radii;
+    if (!vertex_radii_.empty()) {
+      vertex_radii_.resize(mesh.positions.size(), EdgeRadii::kNone);
+      for (const Triangle& t : mesh.triangles) {
+        for (std::size_t k = 0; k < 3; ++k) radii.add_side(t[k], t[(k + 1) % 3], vertex_radii_);
+      }
+      vertex_radii_.clear();
+    }
+    return radii.take();
   }
 
   // Makes normals unit; one that can't be is replaced by that of a triangle at the vertex.
@@ -247,6 +281,7 @@ class MeshBuilder {
   const std::vector<GltfUvChoice>& uv_choices_;
   GltfMeshes result_;
   std::vector<SeenVertex> vertices_;
+  std::vector<float> vertex_radii_;  // of one mesh; empty: it has none so far
   std::uint64_t serial_ = 0;
   std::size_t skipped_ = 0, lacking_uvs_ = 0;
 };

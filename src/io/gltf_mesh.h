@@ -1,6 +1,7 @@
 // gltf_mesh.h — glTF meshes as triangles
 // What       one Mesh for each glTF mesh: its primitives are joined, so that a solid with several
-//            materials stays one solid; materials go with the triangles
+//            materials stays one solid; materials go with the triangles. Edges of triangles get the smaller
+//            _ARRIS_RADIUS of their ends as a radius, if both have one
 // Guarantee  positions and uvs are finite, normals unit, indices in range; only vertices that
 //            triangles use are kept
 // Limits     points and lines are left out with a note. Normals that are missing in some of a mesh's

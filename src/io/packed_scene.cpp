@@ -13,7 +13,7 @@ namespace {
 
 // To be changed with what follows it.
 constexpr std::array<char, 16> kMark = {'a', 'r', 'r', 'i', 's', ' ', 'p', 'a',
-                                        'c', 'k', 'e', 'd', ' ', '0', '0', '1'};
+                                        'c', 'k', 'e', 'd', ' ', '0', '0', '2'};
 
 class Packer {
  public:
@@ -116,6 +116,7 @@ std::vector<std::uint8_t> pack_scene(const Scene& scene) {
     packer.put_all(mesh.triangle_materials);
     packer.put(std::uint8_t(mesh.sharp_edges ? 1 : 0));
     packer.put_all(mesh.sharp_edges.value_or(std::vector<VertexPair>()));
+    packer.put_all(mesh.edge_radii);
   }
   packer.put(std::uint64_t(scene.objects.size()));
   for (const Object& object : scene.objects) {
@@ -149,6 +150,7 @@ Scene unpack_scene(std::span<const std::uint8_t> bytes) {
     const bool knows_sharp_edges = unpacker.take<std::uint8_t>() != 0;
     std::vector<VertexPair> sharp_edges = unpacker.take_all<VertexPair>();
     if (knows_sharp_edges) mesh.sharp_edges = std::move(sharp_edges);
+    mesh.edge_radii = unpacker.take_all<EdgeRadius>();
   }
   for (std::uint64_t n = unpacker.take_count(); n > 0; --n) {
     Object& object = scene.objects.emplace_back();

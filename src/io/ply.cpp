@@ -1,4 +1,5 @@
-// ply.cpp — the Stanford polygon format: elements "vertex" and "face" of any properties; others skipped
+// ply.cpp — the Stanford polygon format: elements "vertex" and "face" of any properties, and "edge" with radii; others
+//           are skipped
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -9,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "io/edge_radii.h"
 #include "io/mesh_readers.h"
 #include "io/mesh_scene.h"
 #include "io/ply_header.h"
@@ -54,7 +56,25 @@ const PlyElement* find_element(const PlyHeader& header, std::string_view name) {
 // Which properties of a vertex are read, by their number.
 struct VertexLayout {
   std::vector<int> position, normal, uv;
+  std::vector<int> radius;  // of the edges between vertices
 };
+
+// Of an edge with a radius: numbers of vertex1, vertex2 and radius; else empty.
+std::vector<int> find_edge_properties(const PlyElement& element) {
+  return find_properties(element, {{"vertex1", "vertex2", "radius"}});
+}
+
+std::string problem_with_edges(const PlyElement& edge, const PlyElement& vertex) {
+  const std::vector<int> found = find_edge_properties(edge);
+  if (found.empty()) return "";  // they are skipped
+  if (&edge < &vertex)
+    return "the element \"edge\" comes before \"vertex\"; export it the other way round";
+  for (const int property : {found[0], found[1]}) {
+    if (!is_integer(edge.properties[std::size_t(property)].type))
+      return "the vertices of an edge have a type that is no integer";
+  }
+  return "";
+}
 
 // What can be said against the file before its data is read; empty if nothing.
 std::string problem_with_header(const PlyHeader& header) {
@@ -81,7 +101,8 @@ std::string problem_with_header(const PlyHeader& header) {
     return "the header says " + std::to_string(vertex->count) + " vertices; at most " +
            std::to_string(kMaxCorners) + " are read: split the model";
   }
-  return "";
+  const PlyElement* const edge = find_element(header, "edge");
+  return edge == nullptr ? "" : problem_with_edges(*edge, *vertex);
 }
 
 template <class Rows>
@@ -103,11 +124,14 @@ class PlyBody {
         read_vertices(element);
       } else if (element.name == "face") {
         read_faces(element);
+      } else if (element.name == "edge" && !find_edge_properties(element).empty()) {
+        read_edges(element);
       } else {
         skip_rows(element);
       }
     }
     rows_.end_file();
+    polygons_.mesh.edge_radii = edge_radii_.take();
     normalize_normals(polygons_.mesh, scene_);
     add_object(scene_, std::move(polygons_.mesh));
     return std::move(scene_);
@@ -159,6 +183,11 @@ class PlyBody {
                       ", beyond the largest number that is read (3.4e38); scale the model down");
   }
 
+  float read_radius(const PlyProperty& property) {
+    const double radius = rows_.value_or_nan(property.type, property.name);
+    return std::isnan(radius) ? EdgeRadii::kNone : to_float(radius, property.name);
+  }
+
   Vec3f vector_of(const std::vector<int>& properties) const {
     return {values_[std::size_t(properties[0])], values_[std::size_t(properties[1])],
             values_[std::size_t(properties[2])]};
@@ -167,7 +196,7 @@ class PlyBody {
   // For each property whether it is read.
   std::vector<bool> read_properties(const PlyElement& element, const VertexLayout& layout) const {
     std::vector<bool> read(element.properties.size());
-    for (const std::vector<int>& group : {layout.position, layout.normal, layout.uv}) {
+    for (const auto& group : {layout.position, layout.normal, layout.uv, layout.radius}) {
       for (const int property : group) read[std::size_t(property)] = true;
     }
     return read;
@@ -181,7 +210,8 @@ class PlyBody {
   void read_vertices(const PlyElement& element) {
     const VertexLayout layout{
         find_properties(element, {{"x", "y", "z"}}), find_properties(element, {{"nx", "ny", "nz"}}),
-        find_properties(element, {{"s", "t"}, {"u", "v"}, {"texture_u", "texture_v"}})};
+        find_properties(element, {{"s", "t"}, {"u", "v"}, {"texture_u", "texture_v"}}),
+        find_properties(element, {{"arris_radius"}})};
     const std::vector<bool> read = read_properties(element, layout);
     note_colors(element);
     values_.assign(element.properties.size(), 0.0F);
@@ -191,7 +221,9 @@ class PlyBody {
       rows_.begin_row({element.name, row});
       for (std::size_t i = 0; i < read.size(); ++i) {
         const PlyProperty& property = element.properties[i];
-        if (read[i]) {
+        if (!layout.radius.empty() && int(i) == layout.radius[0]) {
+          vertex_radii_.push_back(read_radius(property));
+        } else if (read[i]) {
           values_[i] = to_float(rows_.value(property.type, property.name), property.name);
         } else {
           skip_property(property);
@@ -223,7 +255,51 @@ class PlyBody {
       if (const std::string problem = polygons_.add(corners_); !problem.empty()) {
         throw rows_.error(problem);
       }
+      if (!vertex_radii_.empty()) add_sides();
     }
+  }
+
+  // Of the last polygon: what cuts it into triangles is no edge.
+  void add_sides() {
+    for (std::size_t i = 0; i < corners_.size(); ++i) {
+      const std::int64_t next = corners_[(i + 1) % corners_.size()];
+      edge_radii_.add_side(std::uint32_t(corners_[i]), std::uint32_t(next), vertex_radii_);
+    }
+  }
+
+  void read_edges(const PlyElement& element) {
+    const std::vector<int> found = find_edge_properties(element);
+    for (std::uint64_t row = 0; row < element.count; ++row) {
+      rows_.begin_row({element.name, row});
+      VertexPair ends{};
+      float radius = EdgeRadii::kNone;
+      for (std::size_t i = 0; i < element.properties.size(); ++i) {
+        const PlyProperty& property = element.properties[i];
+        if (int(i) == found[0]) {
+          ends[0] = read_vertex_number(property);
+        } else if (int(i) == found[1]) {
+          ends[1] = read_vertex_number(property);
+        } else if (int(i) == found[2]) {
+          radius = read_radius(property);
+        } else {
+          skip_property(property);
+        }
+      }
+      rows_.end_row();
+      if (ends[0] == ends[1]) {
+        throw rows_.error("both ends of the edge are vertex " + std::to_string(ends[0]));
+      }
+      edge_radii_.add_edge(ends[0], ends[1], radius);
+    }
+  }
+
+  std::uint32_t read_vertex_number(const PlyProperty& property) {
+    const auto number = std::int64_t(rows_.value(property.type, property.name));
+    const std::size_t count = polygons_.mesh.positions.size();
+    if (const std::string problem = problem_with_vertex(number, count); !problem.empty()) {
+      throw rows_.error(problem);
+    }
+    return std::uint32_t(number);
   }
 
   void read_corners(const PlyProperty& property) {
@@ -239,7 +315,9 @@ class PlyBody {
   std::string file_;
   Scene scene_;
   PolygonMesh polygons_;
-  std::vector<float> values_;  // of one vertex's properties
+  EdgeRadii edge_radii_;
+  std::vector<float> vertex_radii_;  // one per vertex, or empty
+  std::vector<float> values_;        // of one vertex's properties
   std::vector<std::int64_t> corners_;
 };
 

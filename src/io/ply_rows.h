@@ -1,6 +1,6 @@
 // ply_rows.h — the rows of a PLY file's elements, from text or from binary data
 // What       AsciiRows and BinaryRows have the same functions, called in the order begin_row(), then for
-//            each property value(), or length() and its items, or skip(), then end_row()
+//            each property value(), value_or_nan(), or length() and its items, or skip(), then end_row()
 // Errors     kind input; a value that is missing, malformed or, where a finite one is asked for, not finite
 #pragma once
 
@@ -10,6 +10,7 @@
 #include <cmath>
 #include <cstdint>
 #include <cstring>
+#include <limits>
 #include <optional>
 #include <span>
 #include <string>
@@ -43,13 +44,11 @@ class AsciiRows {
     throw text_.error("the file ends where " + std::string(place.element) + " " +
                       std::to_string(place.row) + " should be: it is cut off");
   }
-  double value(PlyType type, std::string_view what) {
-    const std::string_view word = text_.word();
-    if (word.empty()) throw text_.error("the line ends where " + std::string(what) + " should be");
-    if (!is_integer(type)) return double(text_.to_number(word, what));
-    const std::optional<std::int64_t> number = parse_integer(word);
-    if (number) return double(*number);
-    throw text_.error(std::string(what) + " is " + in_quotes(word) + ", which is not an integer");
+  double value(PlyType type, std::string_view what) { return to_number(word(what), type, what); }
+  double value_or_nan(PlyType type, std::string_view what) {
+    const std::string_view found = word(what);
+    const bool is_nan = equal_ignoring_case(found, "nan") || equal_ignoring_case(found, "-nan");
+    return is_nan ? std::numeric_limits<double>::quiet_NaN() : to_number(found, type, what);
   }
   double length(PlyType type) { return value(type, "a list's length"); }
   void skip(PlyType /*type*/, std::uint64_t count) {
@@ -71,6 +70,19 @@ class AsciiRows {
   [[nodiscard]] Error error(const std::string& what) const { return text_.error(what); }
 
  private:
+  std::string_view word(std::string_view what) {
+    const std::string_view found = text_.word();
+    if (found.empty()) throw text_.error("the line ends where " + std::string(what) + " should be");
+    return found;
+  }
+  [[nodiscard]] double to_number(std::string_view found, PlyType type,
+                                 std::string_view what) const {
+    if (!is_integer(type)) return double(text_.to_number(found, what));
+    const std::optional<std::int64_t> number = parse_integer(found);
+    if (number) return double(*number);
+    throw text_.error(std::string(what) + " is " + in_quotes(found) + ", which is not an integer");
+  }
+
   TextScanner text_;
 };
 
@@ -91,6 +103,11 @@ class BinaryRows {
     const double number = take(type);
     if (std::isfinite(number)) return number;
     throw error(std::string(what) + " is not a finite number; export the model again");
+  }
+  double value_or_nan(PlyType type, std::string_view what) {
+    const double number = take(type);
+    if (!std::isinf(number)) return number;
+    throw error(std::string(what) + " is infinite; export the model again");
   }
   double length(PlyType type) { return take(type); }
   void skip(PlyType type, std::uint64_t count) {

@@ -11,10 +11,7 @@ std::string PolygonMesh::add(std::span<const std::int64_t> corners) {
   const std::size_t count = mesh.positions.size();
   positions_.clear();
   for (const std::int64_t corner : corners) {
-    if (corner < 0 || std::size_t(corner) >= count) {
-      return "vertex " + std::to_string(corner) + " is out of range: the file has " +
-             std::to_string(count) + ", numbered from 0";
-    }
+    if (std::string problem = problem_with_vertex(corner, count); !problem.empty()) return problem;
     positions_.push_back(mesh.positions[std::size_t(corner)]);
   }
   const std::span<const Triangle> triangles = triangulator_.triangulate(positions_);
@@ -27,6 +24,12 @@ std::string PolygonMesh::add(std::span<const std::int64_t> corners) {
         {std::uint32_t(corners[t[0]]), std::uint32_t(corners[t[1]]), std::uint32_t(corners[t[2]])});
   }
   return "";
+}
+
+std::string problem_with_vertex(std::int64_t number, std::size_t count) {
+  if (number >= 0 && std::size_t(number) < count) return "";
+  return "vertex " + std::to_string(number) + " is out of range: the file has " +
+         std::to_string(count) + ", numbered from 0";
 }
 
 void normalize_normals(Mesh& mesh, Scene& scene) {

@@ -26,6 +26,9 @@ class PolygonMesh {
   PolygonTriangulator triangulator_;
 };
 
+// What is wrong with a vertex's number, from 0, among `count`; empty if nothing is.
+std::string problem_with_vertex(std::int64_t number, std::size_t count);
+
 // Makes the normals unit; those of a mesh with a normal of length 0 are left out with a note in the scene.
 void normalize_normals(Mesh& mesh, Scene& scene);
 

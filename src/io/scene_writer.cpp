@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <cmath>
 #include <initializer_list>
@@ -46,18 +47,27 @@ TomlTable table(std::initializer_list<std::pair<const char*, TomlData>> members)
   return out;
 }
 
-// Of angles that come from degrees some that give the same radians; few others have any.
-double exact_degrees(double angle) {
-  const double deg = degrees(angle), rounded = std::round(deg * 1e9) / 1e9;
-  if (radians(rounded) == angle) return rounded;
+// What the reader turns into exactly the value, close to `near` and short if it can be. Values that no file has said may
+// have none: then `near`.
+template <class Read>
+double find_exact(double value, double near, const Read& read) {
+  const double rounded = std::round(near * 1e9) / 1e9;
+  if (read(rounded) == value) return rounded;
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   for (const double away : {-kInfinity, kInfinity}) {
-    double near = deg;
-    for (int i = 0; i < 4; ++i, near = std::nextafter(near, away)) {
-      if (radians(near) == angle) return near;
+    double next = near;
+    for (int i = 0; i < 4; ++i, next = std::nextafter(next, away)) {
+      if (read(next) == value) return next;
     }
   }
-  return deg;
+  return near;
+}
+
+double exact_degrees(double angle) {
+  return find_exact(angle, degrees(angle), radians);
+}
+double exact_percent(double part) {
+  return find_exact(part, part * 100, [](double percent) { return percent / 100; });
 }
 
 const char* name_of(RoundMethod method) {
@@ -84,6 +94,15 @@ const char* name_of(RoundEdges edges) {
   }
   return "convex";
 }
+const char* name_of(OnOverlap on_overlap) {
+  switch (on_overlap) {
+    case OnOverlap::report:
+      return "report";
+    case OnOverlap::clamp:
+      return "clamp";
+  }
+  return "report";
+}
 const char* name_of(ImageSettings::Filter filter) {
   switch (filter) {
     case ImageSettings::Filter::box:
@@ -103,6 +122,24 @@ struct RadiusData {
   TomlData operator()(double radius) const { return radius; }
   TomlData operator()(PercentOfInradius radius) const { return fmt::format("{}%", radius.percent); }
 };
+
+TomlArray points(const std::array<Vec3d, 2>& ends) {
+  return {{{}, vector(ends[0])}, {{}, vector(ends[1])}};
+}
+
+TomlTable make_rule_table(const EdgeRule& rule) {
+  TomlTable out = table({{"radius", rule.radius}});
+  if (rule.is_part) set_toml(out, "radius", fmt::format("{}%", exact_percent(rule.radius)));
+  if (rule.turn) {
+    const auto [least, most] = *rule.turn;
+    set_toml(out, "angle", TomlArray{{{}, exact_degrees(least)}, {{}, exact_degrees(most)}});
+  }
+  if (rule.box) set_toml(out, "box", points(*rule.box));
+  TomlArray edges;
+  for (const std::array<Vec3d, 2>& segment : rule.segments) edges.push_back({{}, points(segment)});
+  if (!edges.empty()) set_toml(out, "edges", std::move(edges));
+  return out;
+}
 
 // Scene files take one whole turn each way.
 double rotation_degrees(double angle) {
@@ -215,6 +252,11 @@ TomlTable make_rounding_table(const RoundingSettings& rounding) {
     if (shader.perturb) set_toml(out, "perturb", *shader.perturb);
     set_toml(out, "divisions", std::int64_t(shader.divisions));
   }
+  set_toml(out, "on_overlap", text(name_of(rounding.on_overlap)));
+  // Also if there are none: those of [round] would count.
+  TomlArray rules;
+  for (const EdgeRule& rule : rounding.rules) rules.push_back({{}, make_rule_table(rule)});
+  set_toml(out, "rules", std::move(rules));
   return out;
 }
 

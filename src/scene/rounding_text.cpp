@@ -31,12 +31,17 @@ std::optional<RoundingSettings> parse_rounding_text(std::string_view text) {
   if (text == "none") return RoundingSettings{};
   if (text == "auto") return exact_rounding(AutoRadius{});
   if (text.ends_with('%')) {
-    const std::optional<double> percent = parse_number(text.substr(0, text.size() - 1));
+    const std::optional<double> percent = parse_percent(text);
     if (!percent || !(*percent > 0 && *percent < 100)) return std::nullopt;
     return exact_rounding(PercentOfInradius{*percent});
   }
   const std::optional<double> radius = parse_number(text);
   return radius ? make_rounding_settings(*radius) : std::nullopt;
+}
+
+std::optional<double> parse_percent(std::string_view text) {
+  if (!text.ends_with('%')) return std::nullopt;
+  return parse_number(text.substr(0, text.size() - 1));
 }
 
 }  // namespace arris

@@ -19,4 +19,7 @@ std::optional<RoundingSettings> parse_rounding_text(std::string_view text);
 // The same for a radius in world units.
 std::optional<RoundingSettings> make_rounding_settings(double radius);
 
+// 12 for "12%"; nothing for what is no percentage.
+std::optional<double> parse_percent(std::string_view text);
+
 }  // namespace arris

@@ -1,5 +1,6 @@
 #include "scene/scene_fingerprint.h"
 
+#include <array>
 #include <cstring>
 #include <span>
 #include <type_traits>
@@ -32,6 +33,10 @@ class Fingerprint {
     add(value.has_value());
     if (value) add(*value);
   }
+  template <class T, std::size_t N>
+  void add(const std::array<T, N>& values) {
+    for (const T& value : values) add(value);
+  }
   // Elements without padding bytes.
   template <class T>
   requires std::is_trivially_copyable_v<T>
@@ -53,6 +58,7 @@ class Fingerprint {
     add(mesh.uvs);
     add(mesh.triangle_materials);
     if (mesh.sharp_edges) add(*mesh.sharp_edges);
+    add(mesh.edge_radii);
   }
   void add(const Texture& texture) {
     add(texture.width_px);
@@ -95,6 +101,15 @@ class Fingerprint {
     add(r.shader.delta);
     add(r.shader.perturb);
     add(r.shader.divisions);
+    add(r.on_overlap);
+    add_each(r.rules);
+  }
+  void add(const EdgeRule& rule) {
+    add(rule.radius);
+    add(rule.is_part);
+    add(rule.turn);
+    add(rule.box);
+    add(rule.segments);
   }
   // Its points follow each other without padding.
   void add(const CsgRegion& region) { add_each(region.outlines); }

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <optional>
 #include <string>
@@ -96,6 +97,22 @@ void check_mesh(const Scene& scene, std::size_t index, Problems& problems) {
         });
   }
   report_first(
+      mesh.edge_radii,
+      [&](const EdgeRadius& e) { return e.vertices[0] >= vertices || e.vertices[1] >= vertices; },
+      problems,
+      [&](std::size_t i) {
+        const VertexPair& edge = mesh.edge_radii[i].vertices;
+        return fmt::format("{}: the edge radius {} refers to vertex {}, but there are {}", where, i,
+                           std::max(edge[0], edge[1]), vertices);
+      });
+  report_first(
+      mesh.edge_radii,
+      [](const EdgeRadius& e) { return !(e.radius >= 0 && std::isfinite(e.radius)); }, problems,
+      [&](std::size_t i) {
+        return fmt::format("{}: the edge radius {} is {:g}; it must be at least 0 and finite",
+                           where, i, mesh.edge_radii[i].radius);
+      });
+  report_first(
       mesh.normals, [](Vec3f n) { return !is_finite(n); }, problems,
       [&](std::size_t i) {
         return fmt::format("{}: the normal of vertex {} is not a number", where, i);
@@ -189,6 +206,42 @@ void check_texture(const Texture& texture, std::size_t index, Problems& problems
 
 // ---------------------------------------------------------------------------------------------- objects
 
+void check_rule(const std::string& where, const EdgeRule& rule, Problems& problems) {
+  if (!(rule.radius >= 0 && std::isfinite(rule.radius))) {
+    problems.push_back(
+        fmt::format("{}: radius is {:g}; it must be at least 0 and finite", where, rule.radius));
+  }
+  if (rule.turn) {
+    const auto [least, most] = *rule.turn;
+    if (!(least >= 0 && least <= most && most <= kPi)) {
+      problems.push_back(
+          fmt::format("{}: turns from {:g} to {:g} degrees; needed: 0 <= least <= most <= 180",
+                      where, degrees(least), degrees(most)));
+    }
+  }
+  if (rule.box) {
+    const auto& [low, high] = *rule.box;
+    if (!usable_coordinate(low) || !usable_coordinate(high) ||
+        !(low.x <= high.x && low.y <= high.y && low.z <= high.z)) {
+      problems.push_back(fmt::format(
+          "{}: box from {} to {}; corners must be numbers up to {:g}, the low one first", where,
+          list(low), list(high), kMaxCoordinate));
+    }
+  }
+  report_first(
+      rule.segments,
+      [](const std::array<Vec3d, 2>& s) {
+        return !usable_coordinate(s[0]) || !usable_coordinate(s[1]) || s[0] == s[1];
+      },
+      problems,
+      [&](std::size_t i) {
+        const auto& [from, to] = rule.segments[i];
+        return fmt::format(
+            "{}: segment {} goes from {} to {}; give two different points of numbers up to {:g}",
+            where, i, list(from), list(to), kMaxCoordinate);
+      });
+}
+
 void check_rounding(const std::string& where, const RoundingSettings& rounding,
                     Problems& problems) {
   if (rounding.method == RoundMethod::none) {
@@ -217,6 +270,9 @@ void check_rounding(const std::string& where, const RoundingSettings& rounding,
   }
   if (rounding.shader.perturb) {
     check_range(where, "bevel shader perturb", *rounding.shader.perturb, 0, kUnbounded, problems);
+  }
+  for (std::size_t i = 0; i < rounding.rules.size(); ++i) {
+    check_rule(fmt::format("{}: rounding rule {}", where, i), rounding.rules[i], problems);
   }
 }
 

@@ -8,6 +8,8 @@
 #include <cstdlib>
 #include <fstream>
 #include <limits>
+#include <tuple>
+#include <vector>
 
 #include "arris/error.h"
 #include "arris/io.h"
@@ -231,6 +233,60 @@ TEST(GltfReader, reads_quantised_and_normalised_attributes) {
   EXPECT_TRUE(has({1, 0, 0}, {0, 1, 0}, {1, 0}));
   EXPECT_TRUE(has({0, 0.50002F, 0}, {0, 0, -1}, {0, 1}));
   EXPECT_TRUE(has({0, 0, -1}, {-1, 0, 0}, {0.2F, 0.4F}));
+}
+
+GltfTestFile tetrahedron_with_radii(const std::vector<float>& radii) {
+  GltfTestFile file = tetrahedron_file();
+  file.json["meshes"][0]["primitives"][0]["attributes"]["_ARRIS_RADIUS"] =
+      file.add_accessor(radii, 5126, "SCALAR", radii.size());
+  return file;
+}
+
+// By the places of their ends, for vertices are numbered anew.
+std::vector<std::tuple<Vec3f, Vec3f, float>> placed_radii(const Mesh& mesh) {
+  std::vector<std::tuple<Vec3f, Vec3f, float>> placed;
+  for (const EdgeRadius& edge : mesh.edge_radii) {
+    placed.emplace_back(mesh.positions[edge.vertices[0]], mesh.positions[edge.vertices[1]],
+                        edge.radius);
+  }
+  return placed;
+}
+
+TEST(GltfReader, gives_edges_the_smaller_radius_of_their_ends) {
+  const float nan = std::numeric_limits<float>::quiet_NaN();
+  const auto& p = tetrahedron_corners();  // numbered 0, 2, 1, 3
+  EXPECT_THAT(placed_radii(read_file(tetrahedron_with_radii({0.5F, -1, 0.25F, 0})).meshes[0]),
+              testing::ElementsAre(std::tuple(p[0], p[2], 0.25F), std::tuple(p[0], p[3], 0.0F),
+                                   std::tuple(p[2], p[3], 0.0F)));
+  EXPECT_TRUE(read_file(tetrahedron_with_radii({1, nan, nan, -1})).meshes[0].edge_radii.empty());
+}
+
+TEST(GltfReader, keeps_radii_of_one_primitive_beside_others_without) {
+  GltfTestFile file = tetrahedron_with_radii({1, 1, 1, 1});
+  json& primitives = file.json["meshes"][0]["primitives"];
+  json plain = primitives[0];
+  plain["attributes"].erase("_ARRIS_RADIUS");
+  primitives[0]["indices"] = file.add_indices({0, 1, 2});
+  primitives.insert(primitives.begin(), plain);
+  primitives.push_back(plain);
+  const Mesh mesh = read_file(file).meshes[0];
+  ASSERT_EQ(mesh.edge_radii.size(), 3U);
+  for (const EdgeRadius& edge : mesh.edge_radii) {
+    for (const std::uint32_t i : edge.vertices) EXPECT_TRUE(i >= 4 && i < 7) << i;
+  }
+}
+
+TEST(GltfReader, refuses_radii_of_another_type_or_number) {
+  EXPECT_THAT(refusal(tetrahedron_with_radii({1, 1, 1})),
+              HasSubstr("meshes[0].primitives[0]: _ARRIS_RADIUS has 3 elements, POSITION 4"));
+  EXPECT_THAT(refusal(tetrahedron_with_radii({1, std::numeric_limits<float>::infinity(), 1, 1})),
+              HasSubstr("the _ARRIS_RADIUS of vertex 1 is infinite"));
+  GltfTestFile file = tetrahedron_with_radii({1, 1, 1, 1});
+  file.json["accessors"].back()["componentType"] = 5125;
+  EXPECT_THAT(refusal(file), HasSubstr("the values must be floats"));
+  file.json["accessors"].back()["componentType"] = 5126;
+  file.json["accessors"].back()["type"] = "VEC2";
+  EXPECT_THAT(refusal(file), HasSubstr("has 2 components where 1 are needed"));
 }
 
 TEST(GltfReader, replaces_the_elements_of_sparse_accessors) {

@@ -25,6 +25,7 @@ Scene small_scene() {
   mesh.normals = {{0, 0, 1}, {0, 0, 1}, {0, 0, 1}};
   mesh.triangle_materials = {MaterialId{0}};
   mesh.sharp_edges = {{{0, 1}}};
+  mesh.edge_radii = {{{1, 2}, 0.25F}, {{2, 0}, 0}};
   scene.meshes.emplace_back().name = "nothing";
   Object& object = scene.objects.emplace_back();
   object.name = "left";
@@ -49,6 +50,7 @@ TEST(PackedScene, gives_back_what_it_got) {
   EXPECT_EQ(back.meshes[0].triangle_materials.size(), 1U);
   EXPECT_EQ(back.meshes[0].sharp_edges, scene.meshes[0].sharp_edges);
   EXPECT_FALSE(back.meshes[1].sharp_edges);
+  EXPECT_EQ(back.meshes[0].edge_radii, scene.meshes[0].edge_radii);
   ASSERT_EQ(back.objects.size(), 1U);
   EXPECT_EQ(back.objects[0].name, "left");
   EXPECT_EQ(back.objects[0].mesh.index, 1U);

@@ -5,6 +5,7 @@
 #include <bit>
 #include <cstring>
 #include <limits>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -157,6 +158,90 @@ TEST(PlyReader, cuts_a_concave_face_exactly) {
                                 "0 0 0\n2 0 0\n2 1 0\n1 1 0\n1 2 0\n0 2 0\n6 0 1 2 3 4 5\n");
   EXPECT_EQ(scene.meshes.at(0).triangles.size(), 4U);
   EXPECT_DOUBLE_EQ(test::area_of(scene.meshes[0]), 3);
+}
+
+// An L of 6 corners as one face, whose vertices have values, and with edges that have values of their own.
+std::string face_with_radii(const std::string& vertex_radii, const std::string& edges) {
+  std::string text =
+      "ply\nformat ascii 1.0\nelement vertex 6\nproperty float x\nproperty float y\n"
+      "property float z\nproperty float arris_radius\nelement face 1\n"
+      "property list uchar int vertex_indices\nelement edge " +
+      std::to_string(std::count(edges.begin(), edges.end(), '\n')) +
+      "\nproperty uchar red\nproperty int vertex1\nproperty int vertex2\n"
+      "property float radius\nend_header\n";
+  std::istringstream radii(vertex_radii);
+  for (const char* position : {"0 0 0", "2 0 0", "2 1 0", "1 1 0", "1 2 0", "0 2 0"}) {
+    std::string radius;
+    radii >> radius;
+    text += std::string(position) + " " + radius + "\n";
+  }
+  return text + "6 0 1 2 3 4 5\n" + edges;
+}
+
+TEST(PlyReader, gives_sides_of_faces_the_smaller_radius_of_their_ends) {
+  const Scene scene = read_text(face_with_radii("0.5 0.25 0 nan -1 0.75", ""));
+  EXPECT_EQ(scene.meshes.at(0).edge_radii,
+            (std::vector<EdgeRadius>{{{0, 1}, 0.25F}, {{0, 5}, 0.5F}, {{1, 2}, 0}}));
+  EXPECT_TRUE(read_text(face_with_radii("-1 1 -1 1 -1 nan", "")).meshes.at(0).edge_radii.empty());
+}
+
+TEST(PlyReader, gives_edges_their_own_radius_before_that_of_their_vertices) {
+  const Scene scene = read_text(
+      face_with_radii("1 1 1 -1 -1 -1", "9 1 0 0.25\n9 4 3 0.5\n9 2 1 -1\n9 4 3 0.125\n"));
+  EXPECT_EQ(scene.meshes.at(0).edge_radii,
+            (std::vector<EdgeRadius>{{{0, 1}, 0.25F}, {{3, 4}, 0.125F}}));
+}
+
+TEST(PlyReader, reads_edges_with_radii_from_binary_data_before_faces) {
+  for (const std::endian order : {std::endian::little, std::endian::big}) {
+    BinaryFile file("ply\nformat " + format_name(order) +
+                        " 1.0\nelement vertex 3\nproperty float x\nproperty float y\n"
+                        "property float z\nproperty double arris_radius\nelement edge 2\n"
+                        "property ushort vertex1\nproperty uint vertex2\nproperty double radius\n"
+                        "element face 1\nproperty list uchar int vertex_indices\nend_header\n",
+                    order);
+    for (int i = 0; i < 3; ++i) {
+      for (const float x : {float(i % 2), float(i / 2), 0.0F}) file.add(x);
+      file.add(0.125);
+    }
+    for (const std::uint32_t i : {1U, 2U}) {
+      file.add(std::uint16_t(0));
+      file.add(i);
+      file.add(i == 1 ? 0.75 : std::numeric_limits<double>::quiet_NaN());
+    }
+    file.add(std::uint8_t(3));
+    for (const int i : {0, 1, 2}) file.add(i);
+    EXPECT_EQ(read(file.bytes).meshes.at(0).edge_radii,
+              (std::vector<EdgeRadius>{{{0, 1}, 0.75F}, {{1, 2}, 0.125F}}));
+    test::cut_every_byte(file.bytes, read);
+    test::change_every_byte(file.bytes, read);
+  }
+}
+
+TEST(PlyReader, names_what_is_wrong_with_edges) {
+  const auto message = [](const std::string& edge) {
+    return message_of(face_with_radii("1 1 1 1 1 1", "9 0 1 1\n" + edge + "\n"));
+  };
+  EXPECT_THAT(message("9 6 0 1"),
+              AllOf(HasSubstr("part.ply:24: vertex 6 is out of range: the file has 6, ")));
+  EXPECT_THAT(message("9 0 -1 1"), HasSubstr("vertex -1 is out of range"));
+  EXPECT_THAT(message("9 2 2 1"), HasSubstr("both ends of the edge are vertex 2"));
+  EXPECT_THAT(message("9 0 1 inf"), HasSubstr("radius is \"inf\", which is not finite"));
+  EXPECT_THAT(message("9 000 1"), HasSubstr("the line ends where radius should be"));
+  const std::string vertex =
+      "element vertex 3\nproperty float x\nproperty float y\nproperty float z\n";
+  const std::string face = "element face 1\nproperty list uchar int vertex_indices\nend_header\n";
+  const std::string edge = "element edge 1\nproperty float vertex1\nproperty int vertex2\n";
+  EXPECT_THAT(
+      message_of("ply\nformat ascii 1.0\n" + edge + "property float radius\n" + vertex + face),
+      HasSubstr("\"edge\" comes before \"vertex\""));
+  EXPECT_THAT(
+      message_of("ply\nformat ascii 1.0\n" + vertex + edge + "property float radius\n" + face),
+      HasSubstr("the vertices of an edge have a type that is no integer"));
+  // Without radii edges are skipped.
+  EXPECT_THAT(message_of("ply\nformat ascii 1.0\n" + edge + vertex + face +
+                         "7 7\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n"),
+              HasSubstr("no error"));
 }
 
 TEST(PlyReader, rejects_huge_counts_without_taking_memory) {

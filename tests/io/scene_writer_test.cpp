@@ -35,6 +35,13 @@ TEST(SceneWriter, keeps_every_digit) {
     rounding.radius = number();
     rounding.min_angle = radians(angle(random));
     rounding.shader.delta = number();
+    rounding.on_overlap = i % 2 == 0 ? OnOverlap::report : OnOverlap::clamp;
+    rounding.rules.push_back({.radius = number()});
+    rounding.rules.push_back({.radius = angle(random) / 100, .is_part = true});
+    EdgeRule& rule = rounding.rules.emplace_back();
+    rule.turn = {0, radians(angle(random))};
+    rule.box = {{Vec3d(-number(), 0, 0), Vec3d(0, number(), number())}};
+    rule.segments = {{Vec3d(number(), 0, -1), Vec3d(0, 1e9, number())}, {Vec3d(0), Vec3d(1)}};
     scene.rounding = rounding;
     SpotLight spot;
     spot.outer_angle = radians(angle(random));
@@ -54,6 +61,22 @@ TEST(SceneWriter, keeps_every_digit) {
     EXPECT_EQ(read.ground, scene.ground);
     EXPECT_EQ(read.image.exposure, scene.image.exposure);
   }
+}
+
+TEST(SceneWriter, an_object_without_rules_gets_none_of_the_scene) {
+  RoundingSettings rounding;
+  rounding.method = RoundMethod::exact;
+  TomlTable object{{"shape", {}, {{}, std::string("box")}}};
+  set_toml(object, "round", make_rounding_table(rounding));
+  Scene scene;
+  scene.rounding = rounding;
+  scene.rounding->rules = {{.radius = 1}};
+  TomlTable table = make_scene_table(scene);
+  set_toml(table, "object", TomlArray{{{}, object}});
+  const Scene read = read_toml_scene(write_scene_file(table, {}), "s.toml", "/",
+                                     [](const auto&) { return Scene(); });
+  EXPECT_EQ(read.rounding, scene.rounding);
+  EXPECT_EQ(read.objects.at(0).rounding, rounding);
 }
 
 TEST(SceneWriter, light_of_any_strength_is_within_what_scene_files_take) {

@@ -151,6 +151,8 @@ INSTANTIATE_TEST_SUITE_P(
         Misuse{"render cube.stl -o a.png --round-edges convx",
                "--round-edges: \"convx\" is not known; use one of convex, concave, both; did you "
                "mean \"convex\"?\n"},
+        Misuse{"info cube.stl --round-on-overlap clip",
+               "--round-on-overlap: \"clip\" is not known; use one of report, clamp"},
         Misuse{"render cube.stl -o a.png --round-method mesh",
                "--round-method: \"mesh\" is incomplete"},
         Misuse{"render cube.stl -o a.png --round-method mesh:0",

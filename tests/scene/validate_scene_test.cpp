@@ -57,6 +57,18 @@ TEST(validate_scene, names_sharp_edges_out_of_range) {
   expect_problem(scene, "the sharp edge 1 refers to vertex 8, but there are 8");
 }
 
+TEST(validate_scene, names_bad_edge_radii) {
+  Scene scene = valid_scene();
+  scene.meshes[0].edge_radii = {{{0, 7}, 0.25F}, {{1, 2}, 0}};
+  EXPECT_THAT(validate_scene(scene), ElementsAre());
+  scene.meshes[0].edge_radii.push_back({{8, 1}, 0.5F});
+  expect_problem(scene, "the edge radius 2 refers to vertex 8, but there are 8");
+  scene.meshes[0].edge_radii.back() = {{0, 1}, -0.5F};
+  expect_problem(scene, "the edge radius 2 is -0.5; it must be at least 0 and finite");
+  scene.meshes[0].edge_radii.push_back({{0, 1}, kNan});
+  expect_problem(scene, "(1 more like it)");
+}
+
 TEST(validate_scene, names_arrays_of_the_wrong_length) {
   Scene scene = valid_scene();
   scene.meshes[0].normals.resize(3);
@@ -157,6 +169,25 @@ TEST(validate_scene, rejects_bad_rounding) {
   scene.objects[0].rounding.reset();
   scene.objects[0].auto_radius = 0;
   expect_problem(scene, "object \"leg\": its automatic radius is 0; it must be more than 0");
+}
+
+TEST(validate_scene, rejects_bad_rules_for_edges) {
+  const auto expect_rule_problem = [](const EdgeRule& rule, const std::string& text) {
+    Scene scene = valid_scene();
+    scene.rounding.emplace();
+    scene.rounding->method = RoundMethod::exact;
+    scene.rounding->rules = {{}, rule};
+    expect_problem(scene, text);
+  };
+  expect_rule_problem({.radius = -1},
+                      "scene: rounding rule 1: radius is -1; it must be at least 0");
+  expect_rule_problem({.radius = kNan}, "radius is nan");
+  expect_rule_problem({.turn = {{2, 1}}}, "turns from 114.592 to 57.2958 degrees; needed: 0 <= ");
+  expect_rule_problem({.box = {{Vec3d(0, 1, 0), Vec3d(1, 0, 1)}}},
+                      "box from (0, 1, 0) to (1, 0, 1); corners must be numbers");
+  expect_rule_problem({.box = {{Vec3d(0, 0, kNan), Vec3d(1, 1, 1)}}}, "box from (0, 0, nan)");
+  expect_rule_problem({.segments = {{Vec3d(0, 0, 0), Vec3d(0, 0, 1)}, {Vec3d(1), Vec3d(1)}}},
+                      "segment 1 goes from (1, 1, 1) to (1, 1, 1); give two different points");
 }
 
 TEST(validate_scene, rejects_bad_materials_and_pictures) {

@@ -123,6 +123,7 @@ camera."fov" = 30
 'camera'.target = [ 1.0, # [image]
   0.25, 0 ]
 round.radius = "10%" # = "
+round.rules = [{ radius = 0, angle = [10, 50] }]
 image = { size = [320, 200], "samples" = 3, filter = 'tent' }
   [ material . "a.b \"c\" #" ]
 base_color = [0.1, 0.2, 0.3]
@@ -147,7 +148,7 @@ inner_angle = 12.3
 outer_angle = 33.3
 [[object]]
 file = 'two.obj'
-round = 0.03
+round = { radius = 0.03, rules = [{ radius = "33%", box = [[0, 0, 0], [1, 1, 1]] }] }
 scale = 0.7
   [[object.part]]
   number = 2
