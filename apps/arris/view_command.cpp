@@ -150,7 +150,11 @@ void end_soon() {
 }  // namespace
 
 int run_view(const Arguments& arguments) {
+  if (asks_for_materials(arguments)) return print_materials();
   const std::string& input = arguments.positionals[0];
+  if (input.empty()) {
+    throw Error(Error::Kind::input, "INPUT", "is empty; give a model or a scene file");
+  }
   view::ServerSettings server_settings = make_server_settings(arguments);
   view::ViewRendererSettings renderer_settings;
   renderer_settings.threads = threads_of(arguments);

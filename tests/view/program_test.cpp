@@ -240,6 +240,13 @@ TEST(ViewProgram, keeps_the_token_that_it_is_given) {
   EXPECT_EQ(view.token(), "a-token_of-mine-0123");
 }
 
+TEST(ViewProgram, lists_materials_as_render_does) {
+  const test::Workplace place;
+  const test::Outcome list = place.arris("view --material list");
+  EXPECT_EQ(list.code, 0) << list.err;
+  EXPECT_EQ(list.out, place.arris("render --material list").out);
+}
+
 TEST(ViewProgram, bad_input_and_options_are_errors_before_an_address_is_printed) {
   const test::Workplace place;
   for (const auto& [words, text] : std::initializer_list<std::pair<const char*, const char*>>{
@@ -248,6 +255,7 @@ TEST(ViewProgram, bad_input_and_options_are_errors_before_an_address_is_printed)
            {"view cube.stl --round 5", "radius"},
            {"view cube.stl --token short", "16"},
            {"view cube.stl --host no.such.host.invalid --no-browser", "--host"},
+           {"view \"\"", "INPUT"},
            {"view - --watch", "--watch"}}) {
     const test::Outcome outcome = place.arris(words);
     EXPECT_EQ(outcome.code, 2) << words;
