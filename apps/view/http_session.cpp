@@ -266,8 +266,9 @@ class HttpSession : public Stranger, public std::enable_shared_from_this<HttpSes
             }
             self->answer_later({http::status::no_content, "", "", ""});
           });
-    } catch (const std::exception& problem) {
-      answer(refusal(http::status::insufficient_storage, problem.what()));
+    } catch (const std::exception&) {  // which names the folder
+      answer(refusal(http::status::insufficient_storage,
+                     "the server can't keep the model; is there room in its temporary folder?"));
     }
   }
 

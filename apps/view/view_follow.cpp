@@ -186,7 +186,9 @@ void ViewRenderer::Loop::finish_build() {
     error = problem.what();
     if (*build_stop_) return drop_build();
     if (opening_ && !opening_->keeps_edits) {
+      // Where an upload lies is no business of its sender.
       replace_all(error, opening_->file.string(), opening_->name);
+      replace_all(error, opening_->file.parent_path().string() + "/", "");
     }
     if (!opening_) {
       // The camera is not what could not be prepared.

@@ -18,9 +18,16 @@ namespace fs = std::filesystem;
 
 constexpr std::uint64_t kMaxOutputBytes = std::uint64_t(1) << 30;
 
-// The first line of the program's own words that complains.
+// The first line of the program's own words that complains, without the scratch folder's name.
 std::string complaint(const fs::path& log) {
   std::error_code ignored;
+  const auto quote = [folder = log.parent_path().string() + "/"](std::string_view line) {
+    std::string text(line);
+    for (std::size_t at; (at = text.find(folder)) != std::string::npos;) {
+      text.erase(at, folder.size());
+    }
+    return in_quotes(text);
+  };
   if (!fs::exists(log, ignored)) return "";
   const std::vector<std::uint8_t> bytes = read_file_bytes(log);
   std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
@@ -29,11 +36,11 @@ std::string complaint(const fs::path& log) {
     const std::string_view line = text.substr(0, text.find('\n'));
     text.remove_prefix(std::min(text.size(), line.size() + 1));
     if (line.starts_with("ERROR") || line.find("error") != std::string_view::npos) {
-      return in_quotes(line);
+      return quote(line);
     }
     if (!line.empty()) last = line;
   }
-  return last.empty() ? "" : in_quotes(last);
+  return last.empty() ? "" : quote(last);
 }
 
 bool says_empty(const fs::path& log) {
