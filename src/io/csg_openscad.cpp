@@ -50,12 +50,13 @@ bool says_empty(const fs::path& log) {
 }
 
 OpenScadOutput convert(const fs::path& program, const ScratchFolder& folder, const fs::path& input,
-                       const fs::path& output) {
+                       const fs::path& output, const std::atomic<bool>* stop) {
   const fs::path log = folder / "log.txt";
   const std::optional<int> code = run({.program = program,
                                        .arguments = {"-o", output.string(), input.string()},
                                        .log = log,
-                                       .most_seconds = kOpenScadSeconds});
+                                       .most_seconds = kOpenScadSeconds,
+                                       .stop = stop});
   if (!code) return fmt::format("openscad took longer than {} s", kOpenScadSeconds);
   std::error_code ignored;
   if (*code == 0 && fs::exists(output, ignored)) return read_file_bytes(output, kMaxOutputBytes);
@@ -69,16 +70,18 @@ std::optional<fs::path> find_openscad() {
   return find_program("openscad");
 }
 
-OpenScadOutput flatten_by_openscad(const fs::path& program, const fs::path& scad) {
+OpenScadOutput flatten_by_openscad(const fs::path& program, const fs::path& scad,
+                                   const std::atomic<bool>* stop) {
   const ScratchFolder folder("openscad");
-  return convert(program, folder, fs::absolute(scad), folder / "flat.csg");
+  return convert(program, folder, fs::absolute(scad), folder / "flat.csg", stop);
 }
 
-OpenScadOutput mesh_by_openscad(const fs::path& program, const std::string& csg) {
+OpenScadOutput mesh_by_openscad(const fs::path& program, const std::string& csg,
+                                const std::atomic<bool>* stop) {
   const ScratchFolder folder("openscad");
   const fs::path input = folder / "part.csg";
   write_file_whole(input, {reinterpret_cast<const std::uint8_t*>(csg.data()), csg.size()});
-  return convert(program, folder, input, folder / "part.off");
+  return convert(program, folder, input, folder / "part.off", stop);
 }
 
 }  // namespace arris

@@ -63,9 +63,9 @@ constexpr Format kFormats[] = {
      nullptr},
     {".ply", "PLY", [](const SceneFile& f) { return read_ply(f.bytes, f.name); }, looks_like_ply},
     {".off", "OFF", [](const SceneFile& f) { return read_off(f.bytes, f.name); }, looks_like_off},
-    {".step", "STEP", [](const SceneFile& f) { return read_step(f.bytes, f.name); },
+    {".step", "STEP", [](const SceneFile& f) { return read_step(f.bytes, f.name, f.options.stop); },
      looks_like_step},
-    {".stp", "STEP", [](const SceneFile& f) { return read_step(f.bytes, f.name); },
+    {".stp", "STEP", [](const SceneFile& f) { return read_step(f.bytes, f.name, f.options.stop); },
      looks_like_step},
     {".glb", "GLB", [](const SceneFile& f) { return read_gltf(f.bytes, f.name, folder_of(f)); },
      is_glb},
@@ -73,7 +73,8 @@ constexpr Format kFormats[] = {
      nullptr},
     {".csg", "CSG",
      [](const SceneFile& f) {
-       return read_csg(f.bytes, f.name, f.is_alone() ? no_csg_files() : csg_files_beside(f.path),
+       return read_csg(f.bytes, f.name,
+                       f.is_alone() ? no_csg_files() : csg_files_beside(f.path, f.options.stop),
                        f.options);
      },
      nullptr},
