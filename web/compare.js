@@ -1,7 +1,23 @@
 // compare.js — the line in the picture, right of which the edges are rounded in another way.
 
-const NAMES = { exact: "Exact", shader: "Bevel shader", none: "Sharp edges" };
+const NAMES = { exact: "Exact", shader: "Bevel shader", mesh: "Bevel mesh", none: "Sharp edges" };
 const STEP = 0.02;
+const LARGE_STEP = 0.1;
+
+/** Where a key on the line moves it to, or undefined. */
+export function splitAfter(key, split) {
+  const steps = {
+    ArrowLeft: -STEP,
+    ArrowDown: -STEP,
+    ArrowRight: STEP,
+    ArrowUp: STEP,
+    PageDown: -LARGE_STEP,
+    PageUp: LARGE_STEP,
+    Home: -1,
+    End: 1,
+  };
+  return key in steps ? Math.min(Math.max(split + steps[key], 0), 1) : undefined;
+}
 
 export class Compare {
   #session;
@@ -69,8 +85,7 @@ export class Compare {
     });
     for (const end of ["pointerup", "pointercancel"]) handle.addEventListener(end, () => (held = null));
     handle.addEventListener("keydown", (event) => {
-      const { split } = this.#state;
-      const to = { ArrowLeft: split - STEP, ArrowRight: split + STEP, Home: 0, End: 1 }[event.key];
+      const to = splitAfter(event.key, this.#state.split);
       if (to === undefined) return;
       event.preventDefault();
       this.#moveTo(to);

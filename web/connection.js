@@ -3,7 +3,7 @@
 // Messages are collected until the next animation frame and only the newest of each kind is sent, so that a fast
 // mouse never builds a queue. A lost connection is sought again with growing delays.
 //
-// Events: "status" {state, retryInSeconds?}, "frame" {header, jpeg}, and each of the server's message types.
+// Events: "status" {state, reason?, retryInSeconds?}, "frame" {header, jpeg}, and each of the server's message types.
 
 const FIRST_DELAY_MS = 500;
 const LONGEST_DELAY_MS = 15000;
@@ -149,22 +149,24 @@ export class Connection extends EventTarget {
 
   async #lost() {
     this.#socket = null;
-    const refused = await this.#isRefused();
+    const trouble = await this.#findTrouble();
     // Meanwhile the user may have asked for another attempt.
     if (this.#socket) return;
-    const delay = refused ? LONGEST_DELAY_MS : retryDelay(this.#attempt++);
-    this.#tell("status", { state: refused ? "refused" : "lost", retryInSeconds: delay / 1000 });
+    const delay = trouble.state === "refused" ? LONGEST_DELAY_MS : retryDelay(this.#attempt++);
+    this.#tell("status", { ...trouble, retryInSeconds: delay / 1000 });
     this.#retryTimer = setTimeout(() => this.connect(), delay);
   }
 
-  /** A WebSocket does not say why it failed; the page's own address does. */
-  async #isRefused() {
+  /** A WebSocket does not say why it failed; its address does, when it is asked for as a page. */
+  async #findTrouble() {
     try {
-      const answer = await fetch(this.url("/"), { cache: "no-store", redirect: "error" });
-      return answer.status === 403;
+      const answer = await fetch(this.url("/ws"), { cache: "no-store", redirect: "error" });
+      if (answer.status === 403) return { state: "refused" };
+      if (answer.status === 503) return { state: "busy", reason: (await answer.text()).trim() };
     } catch {
-      return false;
+      // It is not there.
     }
+    return { state: "lost" };
   }
 
   #tell(type, detail) {

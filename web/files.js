@@ -55,12 +55,14 @@ export class Files {
   /** Fetched rather than linked to, so that an error becomes a message instead of a file. */
   async #save(path, extension, what, said = (name) => [`Saved ${name}`]) {
     try {
-      const answer = await fetch(this.#connection.url(path), { cache: "no-store" });
-      if (!answer.ok) throw await problemOf(answer);
       const link = document.createElement("a");
-      link.href = URL.createObjectURL(await answer.blob());
       const stem = (this.#session.scene?.name ?? "arris").replace(/\.[^.]*$/, "").replace(/[^\w.-]+/g, "_");
       link.download = `${stem || "arris"}.${extension}`;
+      // A scene file tells how it is rendered, by the name that it will have.
+      const url = `${this.#connection.url(path)}&name=${encodeURIComponent(link.download)}`;
+      const answer = await fetch(url, { cache: "no-store" });
+      if (!answer.ok) throw await problemOf(answer);
+      link.href = URL.createObjectURL(await answer.blob());
       link.click();
       setTimeout(() => URL.revokeObjectURL(link.href), 10000);
       this.#messages.clear(path);

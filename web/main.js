@@ -5,7 +5,7 @@ import { Connection } from "./connection.js";
 import { Errors } from "./errors.js";
 import { Files } from "./files.js";
 import { Input } from "./input.js";
-import { Keys, fillMouseHelp } from "./keys.js";
+import { Keys, fillMouseHelp, keyName } from "./keys.js";
 import { Messages } from "./messages.js";
 import { Move, drawBox } from "./move.js";
 import { Objects } from "./objects.js";
@@ -101,17 +101,23 @@ session.addEventListener("scene", drawMarks);
 
 // The connection
 
-const STATUS = { connecting: "connecting", open: "connected", lost: "no connection", refused: "refused" };
+const STATUS = {
+  connecting: "connecting",
+  open: "connected",
+  lost: "no connection",
+  refused: "refused",
+  busy: "no room",
+};
 let trouble = { state: null, message: null };
 
-connection.addEventListener("status", ({ detail: { state } }) => {
+connection.addEventListener("status", ({ detail: { state, reason } }) => {
   const status = byId("status");
   status.className = state;
   if (state !== "connecting") stage.classList.toggle("stale", state !== "open");
   if (status.textContent !== STATUS[state]) status.textContent = STATUS[state];
   if (state === "connecting") return;
   if (state !== trouble.state) trouble.message?.remove();
-  trouble = { state, message: state === "open" ? null : tellTrouble(state) };
+  trouble = { state, message: state === "open" ? null : tellTrouble(state, reason) };
   showBusy(null);
   if (state === "open") {
     if (!canvas.dataset.frame) showBusy(FIRST_PICTURE);
@@ -125,11 +131,15 @@ function showBusy(what) {
   byId("busy-text").textContent = what ?? "";
 }
 
-function tellTrouble(state) {
+function tellTrouble(state, reason) {
   const retry = { label: "Try now", run: () => connection.connect() };
   if (state === "refused") {
     const remedy = "Its token is not, or no longer, valid. Open the address that arris view has printed last.";
     return messages.lasting("error", "The server refuses this address", remedy, retry);
+  }
+  if (state === "busy") {
+    const [text, remedy = ""] = reason.split("; ");
+    return messages.lasting("error", `No room: ${text}`, `${remedy}. The page tries again by itself.`, retry);
   }
   const remedy = "Is arris view still running? The page tries again by itself.";
   return messages.lasting("error", "The server does not answer", remedy, retry);
@@ -234,7 +244,8 @@ keys.add("1 · 3 · 7 · 9", "front, right, top, isometric view", {
   9: () => view.frame("iso"),
 });
 keys.add("2 · 8", "a quarter turn up, down", { 2: turn(0, Math.PI / 2), 8: turn(0, -Math.PI / 2) });
-keys.add("4 · 6", "roll a quarter left, right", { 4: roll(Math.PI / 2), 6: roll(-Math.PI / 2) });
+// The camera, as in F3D: the picture turns the other way.
+keys.add("4 · 6", "roll a quarter left, right", { 4: roll(-Math.PI / 2), 6: roll(Math.PI / 2) });
 keys.add("5", "perspective or parallel projection", { 5: () => view.change((camera) => camera.toggleParallel()) });
 keys.add("Enter", "the view as it was at first", { Enter: () => view.frame("first") });
 keys.add("Arrows", "turn; move the object while Move is on", {
@@ -264,9 +275,9 @@ keys.add("M", "move objects with the left button", { M: () => setMoving(!setting
 keys.add("K", "mouse as in F3D or Blender", { K: () => setPreset(settings.preset === "f3d" ? "blender" : "f3d") });
 keys.add("Z", "figures", { Z: () => (byId("stats").hidden = !byId("stats").hidden) });
 keys.add("N", "panel", { N: () => togglePanel() });
-keys.add("H · ?", "this help", { H: () => byId("help").showModal(), "?": () => byId("help").showModal() });
+keys.add("H · ?", "this help, or close it", { H: () => byId("help").showModal(), "?": () => byId("help").showModal() });
 keys.add("F12 · Ctrl+S", "save the picture", { F12: () => files.savePicture(), "Ctrl+S": () => files.savePicture() });
-keys.add("Esc", "select nothing", {
+keys.add("Esc", "select nothing, end Move", {
   Escape: () => {
     setMoving(false);
     objects.choose(null);
@@ -294,8 +305,11 @@ document.addEventListener(
   },
   true,
 );
+// What has opened it closes it; the key must not open it again.
 byId("help").addEventListener("keydown", (event) => {
-  if (event.key.toLowerCase() === "h") byId("help").close();
+  if (!["H", "?"].includes(keyName(event))) return;
+  event.stopPropagation();
+  byId("help").close();
 });
 byId("panel-button").addEventListener("click", togglePanel);
 byId("move-mode").addEventListener("click", () => setMoving(!settings.moving));

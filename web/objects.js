@@ -17,7 +17,6 @@ export class Objects extends EventTarget {
   #session;
   #chosen = null;
   #isTyping = false;
-  #first = new Map();
 
   /** Dispatches "chosen"; `lookAt(object)` moves the camera. */
   constructor(session, lookAt) {
@@ -85,9 +84,13 @@ export class Objects extends EventTarget {
     this.#edit(id, { matrix }, { center });
   }
 
+  /** To where the file has it. */
   putBack() {
-    const first = this.#first.get(this.#chosen);
-    if (first) this.#edit(this.#chosen, { matrix: first.matrix }, { center: first.center });
+    const object = this.chosen;
+    if (!object) return;
+    const { matrix, file_matrix: back } = object;
+    const center = object.center.map((x, at) => x + back[at][3] - matrix[at][3]);
+    this.#edit(object.id, { matrix: back }, { center });
   }
 
   /** `known`: what follows from the change, which only the server would tell otherwise. */
@@ -104,7 +107,6 @@ export class Objects extends EventTarget {
     const { objects } = this.#session.scene ?? {};
     if (!objects) return;
     if (isNew) {
-      this.#first = new Map(objects.map(({ id, matrix, center }) => [id, { matrix, center }]));
       byId("object-filter").hidden = objects.length < 12;
       byId("object-filter").value = "";
       if (!this.chosen) this.#chosen = null;

@@ -61,14 +61,17 @@ function connectNumber(id, getScale, change) {
     field.value = formatNumber(value);
     change(value);
   });
+  let shown = "";
+  // What is out of range is said, and replaced by what holds when the field is left.
   field.addEventListener("change", () => {
-    if (field.value === "" || !field.checkValidity()) return;
-    change(Number(field.value));
+    if (field.reportValidity() && field.value !== "") change(Number(field.value));
   });
+  field.addEventListener("blur", () => (field.value = shown));
   return (value) => {
+    shown = formatNumber(value);
     slider.value = getScale().toSlider(value);
-    slider.setAttribute("aria-valuetext", formatNumber(value));
-    if (document.activeElement !== field) field.value = formatNumber(value);
+    slider.setAttribute("aria-valuetext", shown);
+    if (document.activeElement !== field) field.value = shown;
   };
 }
 
@@ -150,6 +153,7 @@ export class Panels {
 
   /** In degrees; kept between -180 and 180. */
   rotateLight(degrees) {
+    if (!this.#session.scene?.rotates) return;
     const rotation = (((this.#session.scene.rotation + degrees + 180) % 360) + 360) % 360 - 180;
     this.#session.send("light", { rotation }, (scene) => (scene.rotation = rotation));
   }
@@ -167,10 +171,21 @@ export class Panels {
     this.#updateLightings(scene);
     this.#show.strength(scene.strength);
     this.#show.rotation(scene.rotation);
+    this.#updateRotation(scene);
     this.#show.shader(scene.shader);
     this.#show.ground(scene.ground);
     this.#show.overlay(scene.overlay);
     this.#updateMaterials(scene);
+  }
+
+  #updateRotation({ rotates, lighting }) {
+    for (const id of ["rotation", "rotation-slider"]) byId(id).disabled = !rotates;
+    const note = byId("rotation-note");
+    note.hidden = rotates;
+    note.textContent =
+      lighting === "white"
+        ? "White light comes from all sides alike: there is nothing to rotate."
+        : "The file’s lamps stay where they are: there is nothing to rotate.";
   }
 
   /** Only those that the model has; a server that does not say: its file's own too, where it is lit so. */
@@ -184,7 +199,11 @@ export class Panels {
 
   #updateRounding({ rounding, bounds, objects, radius_limit: limit }) {
     this.#radiusScale = radiusScale(bounds, limit);
-    byId("rounding-note").hidden = !objects.length || !objects.every(({ csg }) => csg);
+    // Of solids that stay sharp there is nothing to set.
+    const isSharp = objects.length > 0 && objects.every(({ csg }) => csg);
+    byId("rounding-note").hidden = !isSharp;
+    for (const row of byId("rounding-section").querySelectorAll(".row")) row.hidden = isSharp;
+    if (rounding.method === "mesh") byId("method-mesh").hidden = false;
     const { radius } = rounding;
     const used = usedRadius(radius, objects);
     const slider = byId("radius-slider");

@@ -63,7 +63,11 @@ export class Session extends EventTarget {
 
   #take(scene) {
     const before = this.scene;
-    const isNew = !before || before.name !== scene.name || before.objects.length !== scene.objects.length;
+    const isNew =
+      !before ||
+      before.model !== scene.model ||
+      before.name !== scene.name ||
+      before.objects.length !== scene.objects.length;
     if (!isNew) {
       for (const [type, names] of Object.entries(KEYS_OF)) {
         if (!this.isPending(type, scene)) continue;

@@ -2,7 +2,7 @@
 
 import { formatNumber } from "./panels.js";
 
-const INTEGRATORS = { "edge-point": "edge-point", traced: "traced" };
+const INTEGRATORS = { "edge-point": "edge-point", traced: "traced", path: "path tracing" };
 const percent = (part) => (part > 0 && part < 0.005 ? "< 1 %" : `${Math.round(part * 100)} %`);
 const count = (number) => number.toLocaleString("en");
 
@@ -27,10 +27,9 @@ export class Stats {
     this.#isMoving = header.moving;
     if (header.moving) set("stat-seconds", formatSeconds(0));
     if (!header.converged) this.#isDone = false;
-    if (latency === null) {
-      if (!header.moving) this.#forgetLatency();
-      return;
-    }
+    // No frame follows one that is finished.
+    if (header.converged || (latency === null && !header.moving)) this.#forgetLatency();
+    if (header.converged || latency === null) return;
     // Single frames jump about more than can be read.
     this.#latency = this.#latency === null ? latency : 0.7 * this.#latency + 0.3 * latency;
     const inServer = `${Math.round(header.serverMs)} ms in the server`;
@@ -49,7 +48,11 @@ export class Stats {
     set("stat-fps", `${Math.round(state.fps)} fps`, `${formatNumber(state.frame_ms, 3)} ms a frame in the server`);
     set("stat-fresh", percent(state.new_samples));
     const { edges, classes } = state;
+    const latency = this.#latency === null ? "–" : `${Math.round(this.#latency)} ms`;
+    // Those of the line over the picture for which narrow screens have no room, too.
     this.#fill([
+      ["Latency", latency],
+      ["New this frame", percent(state.new_samples)],
       ["Triangles", count(state.triangles)],
       ["Rounded edges", count(state.rounded_edges)],
       ["Silhouettes", count(edges.silhouette)],
@@ -69,10 +72,11 @@ export class Stats {
     this.#isDone = converged && !this.#isMoving;
   }
 
-  #setLegend({ integrator, edges: { silhouette, sharp, shadow } }) {
+  #setLegend({ classes, edges: { silhouette, sharp, shadow } }) {
+    const hasClasses = classes.empty + classes.simple + classes.complex > 0;
     const found = `${count(silhouette)} silhouettes, ${count(sharp)} sharp and ${count(shadow)} shadow edges`;
     const traced = "This picture is traced, which needs neither edges nor points: it is only darker.";
-    set("legend-edges", integrator === "traced" ? traced : found);
+    set("legend-edges", hasClasses ? found : traced);
   }
 
   #fill(rows) {

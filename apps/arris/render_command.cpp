@@ -28,7 +28,6 @@
 #include "io/picture_file.h"
 #include "render/edge_denoiser.h"
 #include "render/film.h"
-#include "scene/material_presets.h"
 #include "scene/scene_fingerprint.h"
 #include "scene/validate_placement.h"
 
@@ -44,13 +43,6 @@ class Stopwatch {
  private:
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
-
-int print_materials() {
-  for (const MaterialPreset& preset : material_presets()) {
-    fmt::print("{:<16}{}\n", preset.name, preset.description);
-  }
-  return 0;
-}
 
 void write_stdout(const std::vector<std::uint8_t>& bytes) {
   if (std::fwrite(bytes.data(), 1, bytes.size(), stdout) != bytes.size() ||
@@ -348,7 +340,7 @@ class PictureMaker {
 }  // namespace
 
 int run_render(const Arguments& arguments) {
-  if (arguments.find("--material") == "list") return print_materials();
+  if (asks_for_materials(arguments)) return print_materials();
   RenderRequest request = make_render_request(arguments);
   Console console(arguments);
   PictureMaker maker(request, console, catch_stop_signals());

@@ -302,6 +302,17 @@ StageOptions make_stage_options(const Arguments& arguments) {
   return stage;
 }
 
+bool asks_for_materials(const Arguments& arguments) {
+  return arguments.find("--material") == "list";
+}
+
+int print_materials() {
+  for (const MaterialPreset& preset : material_presets()) {
+    fmt::print("{:<16}{}\n", preset.name, preset.description);
+  }
+  return 0;
+}
+
 EdgePointShader parse_shader(const Arguments& arguments) {
   constexpr EdgePointShader kShaders[] = {EdgePointShader::direct, EdgePointShader::glossy,
                                           EdgePointShader::gi};

@@ -50,6 +50,9 @@ RenderRequest make_render_request(const Arguments& arguments);
 
 // Parts of it that other commands have, too.
 StageOptions make_stage_options(const Arguments& arguments);
+// --material list, which needs no input.
+bool asks_for_materials(const Arguments& arguments);
+int print_materials();
 EdgePointShader parse_shader(const Arguments& arguments);
 // Of a frame that is traced instead: 60 a second.
 inline constexpr double kTraceBelowMs = 16;

@@ -2,12 +2,16 @@
 #include <spawn.h>
 #include <sys/wait.h>
 
+#include <atomic>
 #include <chrono>
+#include <condition_variable>
 #include <cstdint>
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
 #include <memory>
+#include <mutex>
+#include <optional>
 #include <string>
 #include <thread>
 #include <utility>
@@ -20,6 +24,7 @@
 #include "arris/input.h"
 #include "arris/render.h"
 #include "arris/render_request.h"
+#include "arris/stop_signal.h"
 #include "arris/values.h"
 #include "io/file_bytes.h"
 #include "scene/limits.h"
@@ -98,13 +103,14 @@ Input load_watched(const std::string& name, const LoadOptions& options, view::Fi
   return input;
 }
 
-view::ViewModel open_model(const std::filesystem::path& file, const std::string& name,
-                           bool is_foreign, const Arguments& arguments, view::FileWatch* watch) {
+view::ViewModel open_model(const view::ModelFile& what, const Arguments& arguments,
+                           view::FileWatch* watch) {
   LoadOptions options = load_options_of(arguments);
-  if (is_foreign) options.other_files = LoadOptions::OtherFiles::none;
-  Input input = load_watched(file.string(), options, is_foreign ? nullptr : watch);
-  view::ViewModel model = make_model(std::move(input), file, arguments);
-  model.name = name;
+  options.stop = what.stop;
+  if (what.is_foreign) options.other_files = LoadOptions::OtherFiles::none;
+  Input input = load_watched(what.file.string(), options, what.is_foreign ? nullptr : watch);
+  view::ViewModel model = make_model(std::move(input), what.file, arguments);
+  model.name = what.name;
   return model;
 }
 
@@ -139,18 +145,59 @@ void open_browser(const std::string& address) {
 
 // What goes on beside the server stops soon, but for the reading of files, a structure that is being built and the
 // rounding of a single large mesh: the program waits for none of these. Nothing of them is to be kept.
+constexpr auto kEndWait = std::chrono::milliseconds(400);
 void end_soon() {
-  static constexpr auto kWait = std::chrono::milliseconds(400);
   std::thread([] {
-    std::this_thread::sleep_for(kWait);
+    std::this_thread::sleep_for(kEndWait);
     std::_Exit(0);
   }).detach();
 }
 
+// Signals while the first view is prepared, before the server has them: programs that are run for the model end, and
+// what can't be stopped is not waited for.
+class EarlySignals {
+ public:
+  EarlySignals() : stop_(catch_stop_signals()), thread_([this] { run(); }) {}
+  EarlySignals(const EarlySignals&) = delete;
+  EarlySignals& operator=(const EarlySignals&) = delete;
+  ~EarlySignals() {
+    {
+      const std::lock_guard lock(mutex_);
+      over_ = true;
+    }
+    wake_.notify_all();
+    thread_.join();
+  }
+
+  [[nodiscard]] const std::atomic<bool>& stop() const { return stop_; }
+
+ private:
+  void run() {
+    constexpr auto kLook = std::chrono::milliseconds(20);
+    constexpr int kFailed = 1;
+    std::unique_lock lock(mutex_);
+    const auto is_over = [&] { return over_; };
+    while (!stop_) {
+      if (wake_.wait_for(lock, kLook, is_over)) return;
+    }
+    if (!wake_.wait_for(lock, kEndWait, is_over)) std::_Exit(kFailed);
+  }
+
+  const std::atomic<bool>& stop_;
+  std::mutex mutex_;
+  std::condition_variable wake_;
+  bool over_ = false;
+  std::thread thread_;  // the last: all else is there when it starts
+};
+
 }  // namespace
 
 int run_view(const Arguments& arguments) {
+  if (asks_for_materials(arguments)) return print_materials();
   const std::string& input = arguments.positionals[0];
+  if (input.empty()) {
+    throw Error(Error::Kind::input, "INPUT", "is empty; give a model or a scene file");
+  }
   view::ServerSettings server_settings = make_server_settings(arguments);
   view::ViewRendererSettings renderer_settings;
   renderer_settings.threads = threads_of(arguments);
@@ -160,19 +207,24 @@ int run_view(const Arguments& arguments) {
     renderer_settings.trace_below_ms = parse_real(*given, {0, 1e9});
   }
   const std::shared_ptr<view::FileWatch> watch = server_settings.watch;
-  renderer_settings.open = [&arguments, watch](const std::filesystem::path& file,
-                                               const std::string& name, bool is_foreign) {
-    return open_model(file, name, is_foreign, arguments, watch.get());
+  renderer_settings.open = [&arguments, watch](const view::ModelFile& what) {
+    return open_model(what, arguments, watch.get());
   };
   with_rounding_options({}, arguments);  // checked before a long file is read
 
   Console console(arguments);
+  std::optional<EarlySignals> signals(std::in_place);
+  const std::atomic<bool>& stop = signals->stop();
+  LoadOptions load = load_options_of(arguments);
+  load.stop = &stop;
   view::ViewModel model =
-      make_model(load_watched(input, load_options_of(arguments), watch.get()),
+      make_model(load_watched(input, load, watch.get()),
                  input == "-" ? "" : std::filesystem::absolute(input), arguments);
   for (const std::string& note : model.scene.notes) console.report(note);
   view::ViewServer server(std::move(model), std::move(renderer_settings),
                           std::move(server_settings));
+  signals.reset();
+  if (stop) throw Error(Error::Kind::failed, "", "stopped");
   fmt::print("{}\n", server.address());
   if (std::fflush(stdout) != 0) throw Error(Error::Kind::failed, "stdout", "can't be written");
   console.report("open this address in a browser; Ctrl-C ends it");

@@ -133,6 +133,17 @@ bool is_own_origin(std::string_view origin, std::string_view host) {
   return given == "http://" + own || given == "https://" + own;
 }
 
+std::string saved_scene_name(std::string_view name) {
+  constexpr std::size_t kMost = 100;
+  const auto is_word = [](char c) {
+    return (c >= '0' && c <= '9') || (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_';
+  };
+  const bool is_plain =
+      name.size() <= kMost && name.ends_with(".toml") && is_word(name.front()) &&
+      std::ranges::all_of(name, [&](char c) { return is_word(c) || c == '-' || c == '.'; });
+  return is_plain ? std::string(name) : "scene.toml";
+}
+
 std::optional<std::string> upload_extension(std::string_view name) {
   std::string extension = extension_of(std::string(name.substr(0, 4096)));
   const std::vector<std::string> known = scene_extensions();

@@ -35,6 +35,9 @@ bool is_own_host(std::string_view host, std::string_view listens_at);
 // Of the page that this server has sent: http or https at the request's own Host.
 bool is_own_origin(std::string_view origin, std::string_view host);
 
+// The name that a page gives a scene file which it saves, if a shell takes it as one word; else "scene.toml".
+std::string saved_scene_name(std::string_view name);
+
 // ".stl" for "my part.STL"; nothing for models that don't stand by themselves and what is no model.
 std::optional<std::string> upload_extension(std::string_view name);
 

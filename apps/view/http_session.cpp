@@ -173,33 +173,43 @@ class HttpSession : public Stranger, public std::enable_shared_from_this<HttpSes
     if (!is_known) return answer(refusal(http::status::not_found, "there is no such address"));
     if (!has_token()) return refuse_token();
     if (path == "/ws") return on_socket();
-    if (path == "/scene.toml") {
-      return server_.renderer().save_scene([self = shared_from_this()](std::string text,
-                                                                       const std::string& problem) {
-        if (!problem.empty()) {
-          return self->answer_later(refusal(http::status::conflict, problem));
-        }
-        self->answer_later({http::status::ok, "application/toml", std::move(text), "scene.toml"});
-      });
-    }
-    const auto send_picture = [self = shared_from_this(), path](std::vector<std::uint8_t> png) {
+    if (path == "/scene.toml") return on_scene();
+    if (path == "/picture.png") return on_picture();
+    server_.renderer().save_beam([self = shared_from_this()](const std::vector<std::uint8_t>& png) {
       if (png.empty()) {
         return self->answer_later(refusal(http::status::not_found, "there is no such picture"));
       }
       self->answer_later(
-          {http::status::ok, "image/png", std::string(png.begin(), png.end()), path.substr(1)});
-    };
-    if (path == "/picture.png") return server_.renderer().save_picture(send_picture);
-    server_.renderer().save_beam(send_picture);
+          {http::status::ok, "image/png", std::string(png.begin(), png.end()), "beam.png"});
+    });
+  }
+
+  void on_scene() {
+    const std::string name = saved_scene_name(target_.name);
+    server_.renderer().save_scene(
+        name, [self = shared_from_this(), name](std::string text, const std::string& problem) {
+          if (!problem.empty()) return self->answer_later(refusal(http::status::conflict, problem));
+          self->answer_later({http::status::ok, "application/toml", std::move(text), name});
+        });
+  }
+
+  void on_picture() {
+    server_.renderer().save_picture(
+        [self = shared_from_this()](const PngFile& png, const std::string& problem) {
+          if (!png) return self->answer_later(refusal(http::status::conflict, problem));
+          self->answer_later({http::status::ok, "image/png", std::string(png->begin(), png->end()),
+                              "picture.png"});
+        });
   }
 
   void on_socket() {
-    if (!beast::websocket::is_upgrade(parser_.get())) {
-      return answer(refusal(http::status::upgrade_required, "this is a WebSocket"));
-    }
+    // First, as a page whose WebSocket was refused asks like this for the reason.
     if (!server_.has_room_for_client()) {
       return answer(refusal(http::status::service_unavailable,
                             fmt::format("{} pages look already; close one", kMostClients)));
+    }
+    if (!beast::websocket::is_upgrade(parser_.get())) {
+      return answer(refusal(http::status::upgrade_required, "this is a WebSocket"));
     }
     start_socket_session(server_, std::move(stream_), parser_.release());
     counted_ = false;  // the client session counts now
@@ -264,10 +274,12 @@ class HttpSession : public Stranger, public std::enable_shared_from_this<HttpSes
             if (!problem.empty()) {
               return self->answer_later(refusal(http::status::unprocessable_entity, problem));
             }
+            asio::post(self->server_.context(), [self] { self->server_.end_watch(); });
             self->answer_later({http::status::no_content, "", "", ""});
           });
-    } catch (const std::exception& problem) {
-      answer(refusal(http::status::insufficient_storage, problem.what()));
+    } catch (const std::exception&) {  // which names the folder
+      answer(refusal(http::status::insufficient_storage,
+                     "the server can't keep the model; is there room in its temporary folder?"));
     }
   }
 

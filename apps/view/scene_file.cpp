@@ -295,14 +295,14 @@ TomlTable make_model_table(FileNames& names) {
 
 // What scene files can't say is said by the command.
 std::vector<std::string> make_comments(const ViewModel& model, const ViewEdits& edits,
-                                       const FileNames& names) {
+                                       const FileNames& names, const std::string& file_name) {
   std::vector<std::string> comments{"A view of " + model.name + ", saved by arris view."};
   if (edits.shader == EdgePointShader::glossy) {
-    comments.emplace_back("Its shading is glossy: arris view scene.toml --shader glossy");
-    comments.emplace_back(
-        "arris render scene.toml --integrator edge-point --shader glossy -o picture.png");
+    comments.push_back("Its shading is glossy: arris view " + file_name + " --shader glossy");
+    comments.push_back("arris render " + file_name +
+                       " --integrator edge-point --shader glossy -o picture.png");
   } else {
-    comments.emplace_back("arris render scene.toml -o picture.png");
+    comments.push_back("arris render " + file_name + " -o picture.png");
   }
   if (const int depth = model.scene.image.max_depth;
       path_depth(model.scene.image, edits.shader) < depth) {
@@ -331,7 +331,8 @@ void check_model(const ViewModel& model, const ViewEdits& edits) {
 
 }  // namespace
 
-std::string make_scene_file(const ViewModel& model, const ViewEdits& edits) {
+std::string make_scene_file(const ViewModel& model, const ViewEdits& edits,
+                            const std::string& file_name) {
   check_model(model, edits);
   FileNames names(model);
   TomlTable file;
@@ -357,7 +358,7 @@ std::string make_scene_file(const ViewModel& model, const ViewEdits& edits) {
       set_toml(out, key, own->data);
     }
   }
-  return write_scene_file(out, make_comments(model, edits, names));
+  return write_scene_file(out, make_comments(model, edits, names, file_name));
 }
 
 }  // namespace arris::view

@@ -12,6 +12,8 @@
 
 namespace arris::view {
 
-std::string make_scene_file(const ViewModel& model, const ViewEdits& edits);
+// file_name: that it will have, for the commands in its first lines.
+std::string make_scene_file(const ViewModel& model, const ViewEdits& edits,
+                            const std::string& file_name = "scene.toml");
 
 }  // namespace arris::view

@@ -66,6 +66,8 @@ class ViewServer::Impl {
   ClientId add_client(std::weak_ptr<ClientSession> session);
   void remove_client(ClientId client);
   void update_ready();
+  // Another model is shown: files of the one before are of no interest any more.
+  void end_watch();
   // Of the files that are watched; empty: none.
   [[nodiscard]] std::optional<ViewText> watch_problem() const;
 

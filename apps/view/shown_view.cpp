@@ -25,9 +25,13 @@ PrepareOptions prepare_options(const ViewModel& model, const BuildSettings& sett
       .threads = settings.threads, .stop = settings.stop.get(), .placement = placement_of(model)};
 }
 
+// before: another view of the same model, or null.
 ScenePtr prepare_anew(const ViewModel& model, const ViewEdits& edits,
-                      std::optional<RoundMethod> method, const BuildSettings& settings) {
-  return prepare_scene(stage_view(model, edits, method).scene, prepare_options(model, settings));
+                      std::optional<RoundMethod> method, const BuildSettings& settings,
+                      const PreparedScene* before) {
+  PrepareOptions options = prepare_options(model, settings);
+  options.solids_of = before;
+  return prepare_scene(stage_view(model, edits, method).scene, options);
 }
 
 RoundingSettings wanted_rounding(const ViewEdits& edits, std::optional<RoundMethod> method) {
@@ -64,8 +68,9 @@ bool has_own_roundings(const ViewEdits& edits) {
 }
 
 ScenePtr make_scene(const ViewModel& model, const ViewEdits& edits, const StagedView& staged,
-                    const BuildSettings& settings, const UsableView* before) {
-  if (before == nullptr) return prepare_anew(model, edits, std::nullopt, settings);
+                    const BuildSettings& settings, const UsableView* before,
+                    const PreparedScene* solids) {
+  if (before == nullptr) return prepare_anew(model, edits, std::nullopt, settings, solids);
   return bring_up_to_date(before->scene, model, edits, staged, std::nullopt, settings);
 }
 
@@ -76,7 +81,9 @@ ScenePtr make_compared(const ViewModel& model, const ViewEdits& edits, const Sta
   if (before != nullptr && before->compared && before->edits.compared == edits.compared) {
     return bring_up_to_date(before->compared, model, edits, staged, edits.compared, settings);
   }
-  if (has_own_roundings(edits)) return prepare_anew(model, edits, edits.compared, settings);
+  if (has_own_roundings(edits) || has_bevel_meshes(edits)) {
+    return prepare_anew(model, edits, edits.compared, settings, main.get());
+  }
   return prepare_again(*main, wanted_rounding(edits, edits.compared),
                        prepare_options(model, settings));
 }
@@ -120,21 +127,22 @@ UsableView usable_parts(const ShownView& view) {
 
 ShownView build_view(std::shared_ptr<const ViewModel> model, const ViewEdits& edits,
                      const BuildSettings& settings, const std::optional<UsableView>& before) {
-  const bool is_usable =
-      before && before->model == model && find_work(before->edits, edits) < ViewWork::prepare;
+  const bool is_same_model = before && before->model == model;
+  const bool is_usable = is_same_model && find_work(before->edits, edits) < ViewWork::prepare;
   const UsableView* use = is_usable ? &*before : nullptr;
   ShownView view;
   view.stop = settings.stop;
   view.edits = edits;
   view.staged = stage_view(*model, edits);
-  const ScenePtr main = make_scene(*model, edits, view.staged, settings, use);
+  const ScenePtr main = make_scene(*model, edits, view.staged, settings, use,
+                                   is_same_model ? before->scene.get() : nullptr);
   const ScenePtr other = make_compared(*model, edits, view.staged, main, settings, use);
   // Its meshes are the prepared scene's, too; what else it holds is of no use any more.
   view.staged.scene = {};
   view.engine = make_engine(*model, main, edits, settings);
   if (other) view.compared = make_engine(*model, other, edits, settings);
   view.bounds = first_bounds(*model);
-  view.inradii = before && before->model == model ? before->inradii : first_inradii(*model);
+  view.inradii = is_same_model ? before->inradii : first_inradii(*model);
   view.model = std::move(model);
   return view;
 }

@@ -34,6 +34,9 @@ class SocketSession : public ClientSession, public std::enable_shared_from_this<
     socket_.set_option(timeout);
     socket_.read_message_max(kMaxMessageBytes);
     socket_.auto_fragment(false);
+    socket_.control_callback([this](websocket::frame_type kind, beast::string_view) {
+      if (kind == websocket::frame_type::close) give_up_seat();
+    });
     socket_.async_accept(request_,
                          [self = shared_from_this()](error_code error) { self->on_accept(error); });
   }
@@ -133,6 +136,7 @@ class SocketSession : public ClientSession, public std::enable_shared_from_this<
       self->writing_ = false;
       self->frame_.reset();
       if (error) return self->leave();
+      if (self->has_left_) return;
       if (self->closing_) return self->send_close();
       self->write();
     });
@@ -143,10 +147,17 @@ class SocketSession : public ClientSession, public std::enable_shared_from_this<
                         [self = shared_from_this()](error_code) {});
   }
 
-  void leave() {
+  // The connection's end may take long: the other side has to close it, too.
+  void give_up_seat() {
     if (!queue_) return;
     closing_ = true;
+    has_left_ = true;
     server_.remove_client(client_);
+  }
+
+  void leave() {
+    if (!queue_) return;
+    give_up_seat();
     beast::get_lowest_layer(socket_).close();
   }
 
@@ -157,6 +168,7 @@ class SocketSession : public ClientSession, public std::enable_shared_from_this<
   std::optional<ClientQueue> queue_;  // set: it is a client
   ClientId client_ = 0;
   bool greeted_ = false, has_scene_ = false, writing_ = false, closing_ = false;
+  bool has_left_ = false;
   std::string text_;  // what is being sent
   ClientQueue::Frame frame_;
 };

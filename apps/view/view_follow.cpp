@@ -1,4 +1,5 @@
 // What is shown follows what is asked for: at once, or by a view that is built beside.
+#include <fmt/format.h>
 #include <malloc.h>
 
 #include <algorithm>
@@ -9,6 +10,7 @@
 #include <utility>
 
 #include "arris/error.h"
+#include "base/utf8_text.h"
 #include "render/prepared_scene.h"
 #include "view/view_loop.h"
 #include "view/view_report.h"
@@ -52,8 +54,9 @@ void ViewRenderer::Loop::follow_edits() {
     view_.edits.split = desired_.split;
     return;
   }
-  if (next_open_ && next_open_->keeps_edits && next_open_->file != view_.model->file) {
-    next_open_.reset();  // it is no longer shown
+  // A file that has changed waits for an upload, after which it is shown no longer, if that can be shown.
+  if (!next_open_ && std::exchange(reload_waits_, false) && !view_.model->file.empty()) {
+    next_open_ = OpenRequest{view_.model->file, view_.model->name, true, nullptr};
   }
   if (next_open_) return start_open();
   switch (find_work(view_.edits, desired_)) {
@@ -161,12 +164,15 @@ void ViewRenderer::Loop::start_open() {
       [open = settings_.open, file = request.file, name = request.name,
        before = request.keeps_edits ? view_.model : nullptr, edits = desired_,
        settings = build_settings()] {
-        ViewModel opened = open(file, name, before == nullptr);
+        ViewModel opened = open({file, name, before == nullptr, settings.stop.get()});
         if (!before) opened.file.clear();
         auto model = std::make_shared<const ViewModel>(std::move(opened));
         ViewEdits now = first_edits(*model);
         now.size = edits.size;
-        if (before) now = carry_over(first_edits(*before), edits, std::move(now));
+        if (before) {
+          now = carry_over(first_edits(*before), edits, std::move(now),
+                           match_objects(*before, *model));
+        }
         fit_camera(*model, now);
         return build_view(model, now, settings);
       },
@@ -182,11 +188,14 @@ void ViewRenderer::Loop::finish_build() {
     take_view(std::move(*view));
     // What was said of the model before, or of its file.
     if (opening_) send("error", no_error_message());
+    if (!lost_.empty()) send_lost();
   } catch (const std::exception& problem) {
     error = problem.what();
     if (*build_stop_) return drop_build();
     if (opening_ && !opening_->keeps_edits) {
+      // Where an upload lies is no business of its sender.
       replace_all(error, opening_->file.string(), opening_->name);
+      replace_all(error, opening_->file.parent_path().string() + "/", "");
     }
     if (!opening_) {
       // The camera is not what could not be prepared.
@@ -209,18 +218,35 @@ void ViewRenderer::Loop::finish_build() {
   send_scene_soon();
 }
 
+void ViewRenderer::Loop::send_lost() {
+  constexpr std::size_t kMostNames = 4;
+  const std::vector<std::string> lost = std::exchange(lost_, {});
+  std::string names;
+  for (std::size_t i = 0; i < std::min(lost.size(), kMostNames); ++i) {
+    names += (i == 0 ? "" : ", ") + in_quotes(lost[i]);
+  }
+  if (lost.size() > kMostNames) names += fmt::format(" and {} others", lost.size() - kMostNames);
+  const std::string text = "What was changed of " + names +
+                           " is lost, because the file has no object of that name any more";
+  send("error", error_message({}, text, kAboutFile));
+}
+
 // Another model is to be shown. What was asked of this one goes on with it, if it is the same one again.
 void ViewRenderer::Loop::drop_build() {
   add_marks(unasked_, std::exchange(building_, {}));
+  if (opening_ && opening_->keeps_edits) reload_waits_ = true;
   if (opening_ && opening_->done) opening_->done("another model was opened meanwhile");
   opening_.reset();
 }
 
 void ViewRenderer::Loop::take_view(ShownView view) {
   if (opening_ && opening_->keeps_edits) {
-    desired_ = carry_over(built_, desired_, view.edits);
+    const ObjectMatch match = match_objects(*view_.model, *view.model);
+    lost_ = lost_objects(*view_.model, desired_, match);
+    desired_ = carry_over(built_, desired_, view.edits, match);
     fit_camera(*view.model, desired_);
   } else if (opening_) {
+    ++model_number_;
     // Nothing that was asked of the model before has a meaning for this one.
     const PictureSize size = desired_.size;
     desired_ = view.edits;
@@ -249,6 +275,7 @@ void ViewRenderer::Loop::make_pictures() {
     right = &view_.compared->next_frame();
   }
   picture_ = &compose(main, right);
+  ++picture_number_;
 }
 
 void ViewRenderer::Loop::make_frame() {

@@ -9,7 +9,6 @@
 #include <variant>
 
 #include "arris/error.h"
-#include "io/picture_file.h"
 #include "render/camera.h"
 #include "render/prepared_scene.h"
 #include "view/scene_file.h"
@@ -48,6 +47,7 @@ ViewRenderer::Loop::~Loop() {
   wake_.notify_all();
   if (thread_.joinable()) thread_.join();
   encoder_.reset();
+  saver_.reset();
 }
 
 void ViewRenderer::Loop::start(ViewOutputs outputs) {
@@ -55,6 +55,7 @@ void ViewRenderer::Loop::start(ViewOutputs outputs) {
   encoder_ = std::make_unique<FrameEncoder>(FrameEncoder::Outputs{
       outputs_.send_frame,
       [this](const std::string& error) { send("error", error_message({}, error)); }});
+  saver_ = std::make_unique<PictureSaver>();
   pace_.note_change(Clock::now());
   thread_ = std::thread([this] { run(); });
 }
@@ -271,7 +272,7 @@ void ViewRenderer::Loop::join(ClientId client) {
   rest_at_.reset();
   settled_ = false;
   pace_.hurry(Clock::now());
-  send("scene", with_seq(scene_message(view_, desired_, settings_.upload), 0), client);
+  send("scene", with_seq(describe_scene(), 0), client);
   if (!busy_.empty()) send("busy", busy_message(busy_), client);
 }
 
@@ -336,6 +337,10 @@ void ViewRenderer::Loop::send_errors(const std::vector<InputMark>& marks, const 
   }
 }
 
+std::string ViewRenderer::Loop::describe_scene() const {
+  return scene_message(view_, desired_, {settings_.upload, model_number_});
+}
+
 // Or only the camera, to those who have not set it.
 void ViewRenderer::Loop::send_scene() {
   scene_sent_ = Clock::now();
@@ -343,7 +348,7 @@ void ViewRenderer::Loop::send_scene() {
     return send("camera", camera_message(desired_.camera), {}, camera_but_not_);
   }
   scene_dirty_ = false;
-  const std::string text = scene_message(view_, desired_, settings_.upload);
+  const std::string text = describe_scene();
   for (const Client& client : clients_) {
     const auto mark = std::ranges::find(taken_, client.id, &InputMark::client);
     send("scene", with_seq(text, mark == taken_.end() ? 0 : mark->seq), client.id);
@@ -367,29 +372,26 @@ void ViewRenderer::Loop::send_state(bool now) {
   state.seconds = pace_.still_seconds(time);
   const double pixels = double(view_.edits.size.width_px) * view_.edits.size.height_px;
   state.new_samples = double(state.stats.new_points) / pixels;
+  state.moving = pace_.is_moving(time);
   state.converged = settled_;
   send("state", state_message(state, *view_.engine->scene()));
 }
 
 // Files to save, and models to open.
 
-void ViewRenderer::Loop::save_picture(const std::function<void(std::vector<std::uint8_t>)>& done) {
-  std::vector<std::uint8_t> png;
+void ViewRenderer::Loop::save_picture(const PictureSaved& done) {
   try {
     if (picture_ == nullptr) make_pictures();
-    SaveOptions options;
-    options.exposure = view_.model->scene.image.exposure;
-    png = encode_picture({*picture_, {}}, PictureFormat::png, options);
+    saver_->put(picture_number_, *picture_, view_.model->scene.image.exposure, done);
   } catch (const std::exception& error) {
-    send("error", error_message({}, error.what()));
+    done(nullptr, error.what());
   }
-  done(std::move(png));
 }
 
-void ViewRenderer::Loop::save_scene(const SceneSaved& done) {
+void ViewRenderer::Loop::save_scene(const std::string& file_name, const SceneSaved& done) {
   std::string text;
   try {
-    text = make_scene_file(*view_.model, desired_);
+    text = make_scene_file(*view_.model, desired_, file_name);
   } catch (const std::exception& error) {
     return done({}, error.what());
   }
@@ -408,11 +410,9 @@ void ViewRenderer::Loop::open(std::filesystem::path file, std::string name,
 }
 
 void ViewRenderer::Loop::reload() {
-  const ViewModel& model = *view_.model;
-  if (model.file.empty() || next_open_) return;
-  next_open_ = OpenRequest{model.file, model.name, true, nullptr};
-  // An upload that is prepared is to be shown instead, if it can be.
-  if (!opening_ || opening_->keeps_edits) cancel_build();
+  reload_waits_ = true;
+  // An upload that waits or is prepared is to be shown instead, if it can be.
+  if (!next_open_ && (!opening_ || opening_->keeps_edits)) cancel_build();
 }
 
 }  // namespace arris::view

@@ -38,8 +38,8 @@ class ViewRenderer::Loop {
   // Of the loop's own thread, posted.
   void join(ClientId client);
   void leave(ClientId client);
-  void save_picture(const std::function<void(std::vector<std::uint8_t>)>& done);
-  void save_scene(const SceneSaved& done);
+  void save_picture(const PictureSaved& done);
+  void save_scene(const std::string& file_name, const SceneSaved& done);
   void save_beam(const std::function<void(std::vector<std::uint8_t>)>& done);
   void open(std::filesystem::path file, std::string name,
             std::function<void(const std::string&)> done);
@@ -78,6 +78,7 @@ class ViewRenderer::Loop {
   void finish_build();
   void drop_build();
   void take_view(ShownView view);
+  void send_lost();
   void tell_engines();
   void note_shown_changes();
   void undo_asked(const std::string& error);
@@ -94,6 +95,7 @@ class ViewRenderer::Loop {
   const Image& compose(const Image& main, const Image* right);
   void send_state(bool now);
   void send_scene();
+  [[nodiscard]] std::string describe_scene() const;
   [[nodiscard]] bool has_news() const { return scene_dirty_ || camera_dirty_; }
   void send_errors(const std::vector<InputMark>& marks, const std::string& what,
                    const std::string& about) const;
@@ -117,10 +119,12 @@ class ViewRenderer::Loop {
   ViewRendererSettings settings_;
   ViewOutputs outputs_;
   std::unique_ptr<FrameEncoder> encoder_;
+  std::unique_ptr<PictureSaver> saver_;
   Rgb8Picture codes_;
   SetQuality quality_;
 
   ShownView view_;
+  std::uint32_t model_number_ = 1;  // ServerFacts::model
   ViewEdits desired_;
   std::vector<InputMark> unasked_;  // of inputs that `desired_` has and no engine or build yet
   std::deque<Asked> asked_;
@@ -132,9 +136,12 @@ class ViewRenderer::Loop {
   StopFlag build_stop_;
   std::optional<OpenRequest> opening_;  // being built
   std::optional<OpenRequest> next_open_;
+  bool reload_waits_ = false;      // the model's file has changed
+  std::vector<std::string> lost_;  // lost_objects() of what was read again
   std::string busy_;
 
-  const Image* picture_ = nullptr;  // of the last frame
+  const Image* picture_ = nullptr;    // of the last frame
+  std::uint64_t picture_number_ = 0;  // of all that were made
   Image composed_;
   std::optional<std::pair<std::shared_ptr<const PreparedScene>, Shooter>> shooter_;
   BeamWorker beam_;

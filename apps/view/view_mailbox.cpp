@@ -70,7 +70,8 @@ bool ViewMailbox::put(Input input) {
   const auto same = std::ranges::find_if(
       inputs_, [&](const Input& waiting) { return is_same_kind(waiting, input); });
   if (same == inputs_.end()) {
-    if (inputs_.size() >= kMostInputs) return false;
+    const auto waiting = std::ranges::count(inputs_, input.client, &Input::client);
+    if (std::size_t(waiting) >= kMostInputs) return false;
   } else {
     std::visit(Join{same->what}, input.what);
     std::vector<InputMark> marks = std::move(same->marks);

@@ -1,7 +1,7 @@
 // view_mailbox.h — what clients have said and the renderer has not looked at yet
 // What       of each kind of input the newest counts; what several of them change is joined, and all that they
 //            answer is kept: the newest seq of each client
-// Guarantee  at most kMostInputs wait, each with a mark for each client
+// Guarantee  at most kMostInputs of each client wait, each with a mark for each client
 // Limits     one thread at a time
 #pragma once
 
@@ -37,7 +37,7 @@ void add_marks(std::vector<InputMark>& marks, const std::vector<InputMark>& more
 
 class ViewMailbox {
  public:
-  // False: it is full, and the input is not taken.
+  // False: too many of this client wait, and the input is not taken.
   bool put(Input input);
   // All, in the order of the newest of each kind.
   std::vector<Input> take();

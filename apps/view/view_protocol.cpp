@@ -27,8 +27,10 @@ constexpr std::size_t kMostNameBytes = 256;
 template <class T>
 using Names = std::vector<std::pair<std::string, T>>;
 
-const Names<RoundMethod> kMethods{
-    {"exact", RoundMethod::exact}, {"shader", RoundMethod::shader}, {"none", RoundMethod::none}};
+const Names<RoundMethod> kMethods{{"exact", RoundMethod::exact},
+                                  {"shader", RoundMethod::shader},
+                                  {"mesh", RoundMethod::mesh},
+                                  {"none", RoundMethod::none}};
 const Names<RoundEdges> kEdges{
     {"convex", RoundEdges::convex}, {"concave", RoundEdges::concave}, {"both", RoundEdges::both}};
 const Names<LightChoice> kLights{{"studio", LightChoice::studio},
@@ -338,7 +340,7 @@ const char* name_of(EdgePointShader shader) {
   return find_name(kShaders, shader);
 }
 const char* name_of(RoundMethod method) {
-  return method == RoundMethod::mesh ? "mesh" : find_name(kMethods, method);
+  return find_name(kMethods, method);
 }
 const char* name_of(RoundEdges edges) {
   return find_name(kEdges, edges);

@@ -49,7 +49,7 @@ struct FrameView {
 };
 // What is empty stays as it is.
 struct SetRounding {
-  std::optional<RoundMethod> method;  // never mesh
+  std::optional<RoundMethod> method;
   std::optional<Radius> radius;
   std::optional<RoundEdges> edges;
   std::optional<double> min_angle;

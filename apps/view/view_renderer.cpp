@@ -31,11 +31,13 @@ void ViewRenderer::set_next_send(std::optional<Clock::time_point> time) {
   loop_->set_next_send(time);
 }
 
-void ViewRenderer::save_picture(std::function<void(std::vector<std::uint8_t>)> done) {
+void ViewRenderer::save_picture(PictureSaved done) {
   loop_->post([loop = loop_.get(), done = std::move(done)] { loop->save_picture(done); });
 }
-void ViewRenderer::save_scene(SceneSaved done) {
-  loop_->post([loop = loop_.get(), done = std::move(done)] { loop->save_scene(done); });
+void ViewRenderer::save_scene(std::string file_name, SceneSaved done) {
+  loop_->post([loop = loop_.get(), name = std::move(file_name), done = std::move(done)] {
+    loop->save_scene(name, done);
+  });
 }
 void ViewRenderer::save_beam(std::function<void(std::vector<std::uint8_t>)> done) {
   loop_->post([loop = loop_.get(), done = std::move(done)] { loop->save_beam(done); });

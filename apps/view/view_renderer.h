@@ -8,6 +8,7 @@
 // Errors     the constructor throws what loading and preparing throw; all later ones become messages
 #pragma once
 
+#include <atomic>
 #include <cstdint>
 #include <filesystem>
 #include <functional>
@@ -16,6 +17,7 @@
 #include <string>
 #include <vector>
 
+#include "view/picture_saver.h"
 #include "view/view_mailbox.h"
 #include "view/view_stage.h"
 
@@ -42,9 +44,13 @@ struct ViewOutputs {
   std::function<void(ViewText)> send_text;
 };
 
-// is_foreign: a client's, which may name no other files.
-using OpenModel = std::function<ViewModel(const std::filesystem::path& file,
-                                          const std::string& name, bool is_foreign)>;
+struct ModelFile {
+  std::filesystem::path file;
+  std::string name;
+  bool is_foreign = false;                  // a client's, which may name no other files
+  const std::atomic<bool>* stop = nullptr;  // set: nobody waits for it any more
+};
+using OpenModel = std::function<ViewModel(const ModelFile& what)>;
 
 // A scene file, or why there is none.
 using SceneSaved = std::function<void(std::string toml, const std::string& error)>;
@@ -77,9 +83,10 @@ class ViewRenderer {
   void repeat_scene();
   // When the first client will take a frame, or took it, had it been there; nothing: all have one that waits.
   void set_next_send(std::optional<Clock::time_point> time);
-  // `done` is called by the renderer's thread.
-  void save_picture(std::function<void(std::vector<std::uint8_t> png)> done);
-  void save_scene(SceneSaved done);
+  // `done` is called by threads of the renderer.
+  void save_picture(PictureSaved done);
+  // file_name: that it will have, for the commands in it.
+  void save_scene(std::string file_name, SceneSaved done);
   void save_beam(std::function<void(std::vector<std::uint8_t> png)> done);  // empty: there is none
   // error: empty if the model is shown now.
   void open(std::filesystem::path file, std::string name,

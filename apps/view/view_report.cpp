@@ -73,7 +73,8 @@ json object_json(const ViewModel& model, const ViewEdits& edits, std::size_t i,
            {"csg", object.csg.has_value()},
            {"visible", edit.visible},
            {"radius", nullptr},
-           {"matrix", to_json(edit.world_from_object)}};
+           {"matrix", to_json(edit.world_from_object)},
+           {"file_matrix", to_json(object.world_from_object)}};
   if (edit.rounding) out["radius"] = std::visit(RadiusValue{}, edit.rounding->radius);
   const bool is_there = !bounds.is_empty();
   out["center"] = to_json(is_there ? bounds.center() : Vec3d());
@@ -81,9 +82,17 @@ json object_json(const ViewModel& model, const ViewEdits& edits, std::size_t i,
   return out;
 }
 
+// A still view goes over to paths of its own of each pixel, by which it also converges.
+const char* integrator_of(const ViewState& state) {
+  const EdgePointStats& stats = state.stats;
+  const bool is_still = !state.moving && (stats.traced || stats.traced_still);
+  if (state.converged || is_still) return "path";
+  return stats.traced ? "traced" : "edge-point";
+}
+
 }  // namespace
 
-std::string scene_message(const ShownView& view, const ViewEdits& edits, bool upload) {
+std::string scene_message(const ShownView& view, const ViewEdits& edits, const ServerFacts& facts) {
   const ViewModel& model = *view.model;
   json objects = json::array(), lightings = json::array();
   for (const LightChoice choice : lightings_of(model)) lightings.push_back(name_of(choice));
@@ -99,6 +108,7 @@ std::string scene_message(const ShownView& view, const ViewEdits& edits, bool up
   }
   json out{{"type", "scene"},
            {"name", model.name},
+           {"model", facts.model},
            {"camera", to_json(edits.camera)},
            {"up", to_json(model.scene.up)},
            {"rounding", to_json(edits.rounding)},
@@ -107,13 +117,14 @@ std::string scene_message(const ShownView& view, const ViewEdits& edits, bool up
            {"lightings", std::move(lightings)},
            {"strength", edits.strength},
            {"rotation", edits.rotation_deg},
+           {"rotates", can_rotate_light(model, edits)},
            {"material", nullptr},
            {"materials", material_preset_names()},
            {"ground", edits.ground},
            {"shader", name_of(edits.shader)},
            {"compare", nullptr},
            {"overlay", edits.overlay},
-           {"upload", upload},
+           {"upload", facts.upload},
            {"samples", model.scene.image.samples_per_pixel},
            {"objects", std::move(objects)},
            {"size", to_json(edits.size)}};
@@ -149,7 +160,7 @@ std::string state_message(const ViewState& state, const PreparedScene& prepared)
                   {"samples", stats.still_paths},
                   {"seconds", state.seconds},
                   {"new_samples", state.new_samples},
-                  {"integrator", stats.traced ? "traced" : "edge-point"},
+                  {"integrator", integrator_of(state)},
                   {"triangles", scene.triangles},
                   {"rounded_edges", scene.rounded_edges},
                   {"edges",

@@ -13,8 +13,12 @@
 
 namespace arris::view {
 
-// edits: what the view is to be, which may be ahead of what it shows. upload: whether models may be dropped.
-std::string scene_message(const ShownView& view, const ViewEdits& edits, bool upload);
+struct ServerFacts {
+  bool upload = false;      // whether models may be dropped
+  std::uint32_t model = 1;  // how many have been opened; the same one read again is none of them
+};
+// edits: what the view is to be, which may be ahead of what it shows.
+std::string scene_message(const ShownView& view, const ViewEdits& edits, const ServerFacts& facts);
 // The same for one client: the newest of its inputs that is in it, or 0.
 std::string with_seq(const std::string& scene_message, std::uint32_t seq);
 std::string camera_message(const Camera& camera);
@@ -22,7 +26,7 @@ std::string camera_message(const Camera& camera);
 struct ViewState {
   double fps = 0, frame_ms = 0, seconds = 0;
   double new_samples = 0;  // part of the pixels
-  bool converged = false;
+  bool moving = false, converged = false;
   EdgePointStats stats;
 };
 std::string state_message(const ViewState& state, const PreparedScene& prepared);

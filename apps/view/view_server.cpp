@@ -26,10 +26,16 @@ constexpr auto kOnceGrace = std::chrono::milliseconds(1500);
 constexpr auto kCloseGrace = std::chrono::milliseconds(200);
 constexpr auto kAcceptPause = std::chrono::milliseconds(100);
 
+// ::ffff:0.0.0.0 is 0.0.0.0, and is to be known as such.
+asio::ip::address unmapped(const asio::ip::address& address) {
+  if (!address.is_v6() || !address.to_v6().is_v4_mapped()) return address;
+  return asio::ip::make_address_v4(asio::ip::v4_mapped, address.to_v6());
+}
+
 tcp::endpoint find_endpoint(const ServerSettings& settings, asio::io_context& context) {
   error_code error;
   const auto address = asio::ip::make_address(settings.host, error);
-  if (!error) return {address, settings.port};
+  if (!error) return {unmapped(address), settings.port};
   tcp::resolver resolver(context);
   const auto found = resolver.resolve(settings.host, std::to_string(settings.port), error);
   // An empty name, or one such as "0", would open the server to all without saying so.
@@ -50,6 +56,7 @@ ViewServer::Impl::Impl(ViewModel model, ViewRendererSettings renderer, ServerSet
       token_(settings_.token.empty() ? make_token() : settings_.token) {
   listen();
   renderer_ = std::make_unique<ViewRenderer>(std::move(model), std::move(renderer));
+  wait_for_signal();
 }
 
 ViewServer::Impl::~Impl() {
@@ -93,7 +100,6 @@ bool ViewServer::Impl::is_open_to_all() const {
 }
 
 void ViewServer::Impl::run() {
-  wait_for_signal();
   accept();
   if (settings_.watch) watch();
   renderer_->start({[this](std::shared_ptr<const ViewFrame> frame) {
@@ -152,6 +158,8 @@ void ViewServer::Impl::accept() {
       timer->async_wait([this, timer](error_code) { accept(); });
       return;
     }
+    // Programs that are started must not hold it.
+    ::fcntl(socket.native_handle(), F_SETFD, FD_CLOEXEC);
     // A frame's last bytes would wait for an acknowledgement of those before, which comes 40 ms late.
     error_code ignored;
     socket.set_option(tcp::no_delay(true), ignored);
@@ -218,7 +226,7 @@ std::optional<ViewText> ViewServer::Impl::watch_problem() const {
 void ViewServer::Impl::watch() {
   watch_timer_.expires_after(kWatchInterval);
   watch_timer_.async_wait([this](error_code error) {
-    if (error) return;
+    if (error || !settings_.watch) return;
     FileWatch::Look look = settings_.watch->look();
     if (look.changed) renderer_->reload();
     if (look.problem != watch_problem_) {
@@ -227,6 +235,14 @@ void ViewServer::Impl::watch() {
     }
     watch();
   });
+}
+
+void ViewServer::Impl::end_watch() {
+  settings_.watch.reset();
+  watch_timer_.cancel();
+  if (watch_problem_.empty()) return;
+  watch_problem_.clear();
+  send({"error", no_error_message(kAboutFile), {}, {}});
 }
 
 bool ViewServer::Impl::begin_upload() {

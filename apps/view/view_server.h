@@ -31,7 +31,7 @@ struct ServerSettings {
 
 class ViewServer {
  public:
-  // Listens; prepares the first view.
+  // Listens; prepares the first view. From then on it has SIGINT, SIGTERM and SIGHUP.
   ViewServer(ViewModel model, ViewRendererSettings renderer, ServerSettings settings);
   ViewServer(const ViewServer&) = delete;
   ViewServer& operator=(const ViewServer&) = delete;

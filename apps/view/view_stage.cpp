@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <deque>
 #include <map>
 #include <span>
 #include <utility>
@@ -193,6 +194,10 @@ struct Apply {
     }
   }
   void operator()(const SetLight& m) const {
+    if (m.lighting == LightChoice::file && !has_lights(model)) {
+      throw Error(Error::Kind::input, "",
+                  "the model's file has no lights of its own; use studio, sky or white");
+    }
     edits.lighting = m.lighting.value_or(edits.lighting);
     edits.strength = m.strength.value_or(edits.strength);
     edits.rotation_deg = m.rotation_deg.value_or(edits.rotation_deg);
@@ -241,6 +246,13 @@ std::vector<LightChoice> lightings_of(const ViewModel& model) {
   return out;
 }
 
+bool can_rotate_light(const ViewModel& model, const ViewEdits& edits) {
+  if (edits.lighting == LightChoice::white) return false;
+  const std::optional<Environment>& own = model.scene.environment;
+  return edits.lighting != LightChoice::file ||
+         (own && !std::holds_alternative<ConstantEnvironment>(*own));
+}
+
 ViewEdits first_edits(const ViewModel& model) {
   ViewEdits edits;
   Scene staged = model.scene;
@@ -269,7 +281,22 @@ void apply_message(const ViewModel& model, const MessageKind& message, ViewEdits
   std::visit(Apply{model, edits}, message);
 }
 
-ViewEdits carry_over(const ViewEdits& first_before, const ViewEdits& edits, ViewEdits first_now) {
+ObjectMatch match_objects(const ViewModel& before, const ViewModel& now) {
+  std::map<std::string, std::deque<std::size_t>> by_name;
+  for (std::size_t i = 0; i < before.scene.objects.size(); ++i) {
+    by_name[before.scene.objects[i].name].push_back(i);
+  }
+  ObjectMatch match;
+  for (const Object& object : now.scene.objects) {
+    std::deque<std::size_t>& same = by_name[object.name];
+    match.push_back(same.empty() ? std::nullopt : std::optional(same.front()));
+    if (!same.empty()) same.pop_front();
+  }
+  return match;
+}
+
+ViewEdits carry_over(const ViewEdits& first_before, const ViewEdits& edits, ViewEdits first_now,
+                     const ObjectMatch& match) {
   ViewEdits out = std::move(first_now);
   const auto carry = [](const auto& before, const auto& edited, auto& now) {
     if (!(edited == before)) now = edited;
@@ -283,18 +310,36 @@ ViewEdits carry_over(const ViewEdits& first_before, const ViewEdits& edits, View
   carry(first_before.material, edits.material, out.material);
   carry(first_before.ground, edits.ground, out.ground);
   carry(first_before.shader, edits.shader, out.shader);
-  if (out.objects.size() == edits.objects.size()) {
-    for (std::size_t i = 0; i < out.objects.size(); ++i) {
-      const std::optional<double> auto_radius = out.objects[i].auto_radius;
-      carry(first_before.objects[i], edits.objects[i], out.objects[i]);
-      out.objects[i].auto_radius = auto_radius;
-    }
+  for (std::size_t i = 0; i < out.objects.size(); ++i) {
+    if (!match[i]) continue;
+    const ObjectEdit& before = first_before.objects[*match[i]];
+    const ObjectEdit& edited = edits.objects[*match[i]];
+    ObjectEdit& now = out.objects[i];
+    carry(before.visible, edited.visible, now.visible);
+    carry(before.world_from_object, edited.world_from_object, now.world_from_object);
+    if (edited.rounding == before.rounding) continue;
+    now.rounding = edited.rounding;
+    now.has_edited_radius = edited.has_edited_radius;
   }
   out.size = edits.size;
   out.compared = edits.compared;
   out.split = edits.split;
   out.overlay = edits.overlay;
   return out;
+}
+
+std::vector<std::string> lost_objects(const ViewModel& before, const ViewEdits& edits,
+                                      const ObjectMatch& match) {
+  std::vector<std::string> lost;
+  for (std::size_t i = 0; i < edits.objects.size(); ++i) {
+    const Object& object = before.scene.objects[i];
+    const ObjectEdit& edit = edits.objects[i];
+    const bool is_edited = !edit.visible || edit.rounding != object.rounding ||
+                           edit.world_from_object != object.world_from_object;
+    const bool is_there = std::ranges::find(match, std::optional(i)) != match.end();
+    if (is_edited && !is_there) lost.push_back(object.name);
+  }
+  return lost;
 }
 
 Camera frame_view(const ViewModel& model, const ViewEdits& edits, FrameView::From from) {
@@ -324,8 +369,9 @@ Camera frame_view(const ViewModel& model, const ViewEdits& edits, FrameView::Fro
       return frame_scene_from(visible, frame.east, frame.up, fov);
     case FrameView::From::top:
       return frame_scene_from(visible, frame.up, frame.north, fov);
+    case FrameView::From::iso:  // all three axes alike
+      return frame_scene_from(visible, frame.east - frame.north + frame.up, frame.up, fov);
     case FrameView::From::first:
-    case FrameView::From::iso:
       break;
   }
   return frame_scene(visible, fov);
@@ -391,12 +437,24 @@ ViewWork find_work(const ViewEdits& from, const ViewEdits& to) {
       !std::ranges::equal(from.objects, to.objects, is_prepared_alike)) {
     return ViewWork::prepare;
   }
-  if (from.size != to.size || from.shader != to.shader || from.compared != to.compared) {
-    return ViewWork::new_engine;
+  const bool is_new_engine =
+      from.size != to.size || from.shader != to.shader || from.compared != to.compared;
+  const bool is_change = from.rounding != to.rounding || from.objects != to.objects;
+  if ((is_new_engine || is_change) && (has_bevel_meshes(from) || has_bevel_meshes(to))) {
+    return ViewWork::prepare;
   }
-  if (from.rounding != to.rounding || from.objects != to.objects) return ViewWork::change;
+  if (is_new_engine) return ViewWork::new_engine;
+  if (is_change) return ViewWork::change;
   if (!is_same(from.camera, to.camera)) return ViewWork::camera;
   return from.split != to.split || from.overlay != to.overlay ? ViewWork::redraw : ViewWork::none;
+}
+
+bool has_bevel_meshes(const ViewEdits& edits) {
+  const auto is_meshed = [](const ObjectEdit& object) {
+    return object.rounding && object.rounding->method == RoundMethod::mesh;
+  };
+  return edits.rounding.method == RoundMethod::mesh || edits.compared == RoundMethod::mesh ||
+         std::ranges::any_of(edits.objects, is_meshed);
 }
 
 const char* find_change(const ViewEdits& from, const ViewEdits& to) {

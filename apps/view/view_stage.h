@@ -63,6 +63,8 @@ struct ViewEdits {
 
 // studio, sky and white, and file where the model has lights of its own.
 std::vector<LightChoice> lightings_of(const ViewModel& model);
+// Whether the light's rotation is seen: lamps stay where the file has them, and even light is the same from all sides.
+bool can_rotate_light(const ViewModel& model, const ViewEdits& edits);
 
 // As the model is when it is opened: framed, staged. Throws if there is no room for its camera or ground.
 ViewEdits first_edits(const ViewModel& model);
@@ -71,9 +73,19 @@ ViewEdits first_edits(const ViewModel& model);
 // then as before. Messages that change nothing of the scene do nothing.
 void apply_message(const ViewModel& model, const MessageKind& message, ViewEdits& edits);
 
+// For each object of `now` the one of `before` that has its name; of several of one name the n-th is the n-th. Empty: it
+// is new.
+using ObjectMatch = std::vector<std::optional<std::size_t>>;
+ObjectMatch match_objects(const ViewModel& before, const ViewModel& now);
+
 // The edits of a model whose file has been read again: what was changed by hand stays, all else is as the file is now.
 // Of a framed view the camera is fit_camera()'s to find.
-ViewEdits carry_over(const ViewEdits& first_before, const ViewEdits& edits, ViewEdits first_now);
+ViewEdits carry_over(const ViewEdits& first_before, const ViewEdits& edits, ViewEdits first_now,
+                     const ObjectMatch& match);
+
+// Names of the objects of `before` that were changed by hand and match none.
+std::vector<std::string> lost_objects(const ViewModel& before, const ViewEdits& edits,
+                                      const ObjectMatch& match);
 
 // The camera that shows all visible objects; first: the model's own, or that shows all of it, as when it is opened.
 Camera frame_view(const ViewModel& model, const ViewEdits& edits, FrameView::From from);
@@ -106,9 +118,11 @@ enum class ViewWork {
   camera,      // and nothing else
   change,      // moves of objects, the rounding of the scene
   new_engine,  // picture size, shader, comparison: what was prepared stays
-  prepare,     // all else
+  prepare,     // all else, and any of these two where edges are rounded by meshes
 };
 ViewWork find_work(const ViewEdits& from, const ViewEdits& to);
+// Meshes of rounded edges are among those of the scene: what was prepared serves for no other.
+bool has_bevel_meshes(const ViewEdits& edits);
 // The message (view_protocol.h) that makes the difference; of several the one that fails the most easily, of none "".
 const char* find_change(const ViewEdits& from, const ViewEdits& to);
 

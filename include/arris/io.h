@@ -4,6 +4,7 @@
 // Guarantee  a saved file appears whole or not at all: it is written beside its place and renamed
 #pragma once
 
+#include <atomic>
 #include <cstddef>
 #include <filesystem>
 #include <span>
@@ -19,9 +20,12 @@ struct LoadOptions {
   // Round things of OpenSCAD files. exact: true spheres, cylinders and circles, but for those with a small
   // explicit $fn, such as a hexagon; as_written: with OpenSCAD's facets.
   enum class Facets { exact, as_written } facets = Facets::exact;
-  // What OBJ and OpenSCAD files name: material libraries, pictures, models. beside: found from where the file is, and
-  // OpenSCAD may be run; none: nothing else is read or run, for files of strangers. glTF never leaves its folder.
+  // What OBJ, glTF and OpenSCAD files name: material libraries, pictures, buffers, models. beside: found from where the
+  // file is, and OpenSCAD may be run; none: nothing else is read or run, for files of strangers. glTF never leaves its
+  // folder.
   enum class OtherFiles { beside, none } other_files = OtherFiles::beside;
+  // Set from any thread: a program that is run for the file is ended, and so is loading, with Error{failed}.
+  const std::atomic<bool>* stop = nullptr;
 };
 
 // By extension: .stl .obj .ply .off .step .stp .gltf .glb .csg .scad .toml. Throws Error.

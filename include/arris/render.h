@@ -30,15 +30,19 @@ enum class Placement {
   movable,  // each in its own space, so that prepare_moved() need not build it again
 };
 
+class PreparedScene;
+
 struct PrepareOptions {
   int threads = 0;  // 0: all
   Detection detection = Detection::face_index;
   // Set from any thread; looked at between the steps, which ends with an Error of kind failed.
   const std::atomic<bool>* stop = nullptr;
   Placement placement = Placement::baked;
+  // Of prepare_scene(): one that was prepared from a copy of the same Scene before it was changed. CSG solids that both
+  // have are taken from it. It need not outlive the call.
+  const PreparedScene* solids_of = nullptr;
 };
 
-class PreparedScene;
 // Throws Error with every problem of validate_scene(), or the first one of the rounding.
 std::shared_ptr<const PreparedScene> prepare_scene(Scene scene, const PrepareOptions& options = {});
 // The same scene with another default rounding: only the rounding is built, meshes and their acceleration structure

@@ -44,16 +44,30 @@ struct Around {
   std::vector<Side> sides;  // where the solid begins or ends
 };
 
+// What the search is the same for in all cells.
+struct CreaseSearch {
+  const CellProbe& probe;
+  const SmoothPatches& patches;
+  const PlaceTree& tree;  // of the patches
+  bool many_materials = false;
+  const std::atomic<bool>* stop = nullptr;
+
+  // A single cell may take minutes. What is found by then is lost.
+  [[nodiscard]] bool is_stopped() const {
+    return stop != nullptr && stop->load(std::memory_order_relaxed);
+  }
+};
+
 class CellCreases {
  public:
-  CellCreases(const CellProbe& probe, const SmoothPatches& patches, const PlaceTree& tree,
-              std::uint32_t cell, bool many_materials, std::vector<CreaseSegment>& out)
-      : probe_(probe),
-        patches_(patches),
-        tree_(tree),
+  CellCreases(const CreaseSearch& search, std::uint32_t cell, std::vector<CreaseSegment>& out)
+      : search_(search),
+        probe_(search.probe),
+        patches_(search.patches),
+        tree_(search.tree),
         cell_(cell),
-        many_materials_(many_materials),
-        view_(probe.cells().expression_of(probe.cells().cells()[cell])),
+        many_materials_(search.many_materials),
+        view_(probe_.cells().expression_of(probe_.cells().cells()[cell])),
         out_(out) {}
 
   void find() {
@@ -123,6 +137,7 @@ class CellCreases {
   }
 
   void divide(const Box3d& box, std::span<const std::uint32_t> all) {
+    if (search_.is_stopped()) return;
     const std::vector<std::uint32_t> patches = keep_near(box, all);
     if (patches.size() < 2) return;
     const Vec3d extent = box.high - box.low;
@@ -138,7 +153,7 @@ class CellCreases {
     const std::vector<Active> active = by_surface(box, patches);
     std::vector<std::uint32_t> near;
     for (const Active& a : active) near.push_back(a.surface);
-    for (std::size_t i = 0; i < active.size(); ++i) {
+    for (std::size_t i = 0; i < active.size() && !search_.is_stopped(); ++i) {
       for (std::size_t j = i + 1; j < active.size(); ++j) {
         if (may_meet(active[i], active[j])) add_curve(active[i], active[j], near);
       }
@@ -186,10 +201,13 @@ class CellCreases {
     pieces_.clear();
     curve.collect_pieces(
         intersection(a.box, b.box),
-        [&](const Box3d& box) { return may_hold_surface(a, box) && may_hold_surface(b, box); },
+        [&](const Box3d& box) {
+          return !search_.is_stopped() && may_hold_surface(a, box) && may_hold_surface(b, box);
+        },
         pieces_);
     const std::uint32_t through[] = {a.surface, b.surface};
     for (const SurfaceCurve::Piece& piece : pieces_) {
+      if (search_.is_stopped()) return;
       add_segment(piece.a, piece.b, {through, 2}, near, [&](Vec3d p) { return curve.nearest(p); });
     }
   }
@@ -317,6 +335,7 @@ class CellCreases {
     return best == nullptr ? ~std::uint32_t{0} : probe_.solid().leaf(best->leaf).material.index;
   }
 
+  const CreaseSearch& search_;
   const CellProbe& probe_;
   const SmoothPatches& patches_;
   const PlaceTree& tree_;
@@ -372,29 +391,27 @@ std::vector<CreaseSegment> find_creases(const CellProbe& probe, const SmoothPatc
   }
   if (items.empty() || probe.cells().cells().empty()) return {};
   const PlaceTree tree(std::move(items), boxes, 0);
-  const bool many_materials = has_many_materials(probe.solid());
-  const auto make = [&](std::uint32_t cell, std::vector<CreaseSegment>& out) {
-    return CellCreases(probe, patches, tree, cell, many_materials, out);
-  };
+  const CreaseSearch search{probe, patches, tree, has_many_materials(probe.solid()), stop};
   const std::size_t count = probe.cells().cells().size();
   std::vector<std::vector<CreaseSegment>> found(count + patches.mesh_edges().size());
   parallel_for(found.size(), {.grain = 1, .threads = threads, .stop = stop}, [&](std::size_t i) {
     if (i < count) {
-      make(std::uint32_t(i), found[i]).find();
+      CellCreases(search, std::uint32_t(i), found[i]).find();
       return;
     }
     const MeshLeafEdge& edge = patches.mesh_edges()[i - count];
-    probe.tree().visit([&](const Box3d& box) { return part_in(box, edge.a, edge.b).has_value(); },
-                       [&](std::uint32_t cell) {
-                         const CsgCell& c = probe.cells().cells()[cell];
-                         const std::span<const std::uint32_t> leaves =
-                             probe.cells().expression_of(c).leaves;
-                         if (!std::ranges::binary_search(leaves, edge.leaf)) return true;
-                         const auto part = part_in(intersection(c.own, c.bounds), edge.a, edge.b);
-                         if (part)
-                           make(cell, found[i]).add_mesh_edge(edge, part->first, part->second);
-                         return true;
-                       });
+    probe.tree().visit(
+        [&](const Box3d& box) { return part_in(box, edge.a, edge.b).has_value(); },
+        [&](std::uint32_t cell) {
+          const CsgCell& c = probe.cells().cells()[cell];
+          const std::span<const std::uint32_t> leaves = probe.cells().expression_of(c).leaves;
+          if (!std::ranges::binary_search(leaves, edge.leaf)) return true;
+          const auto part = part_in(intersection(c.own, c.bounds), edge.a, edge.b);
+          if (part) {
+            CellCreases(search, cell, found[i]).add_mesh_edge(edge, part->first, part->second);
+          }
+          return true;
+        });
   });
   return join(found);
 }

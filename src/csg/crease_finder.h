@@ -10,6 +10,7 @@
 // Limits     where two surfaces touch along a curve, at less than kTangent, they make no edge, even if the solid has
 //            one there (the sharp rim between a cylinder and a torus that is tangent to it from outside); features
 //            thinner than CellProbe::reach() may be missed
+// Errors     Error{failed} once `stop` is set, within the time of a few boxes
 // Cost       for each cell its pairs of surfaces; some 100 boxes and membership tests for each curve
 // Source     J. M. Snyder, "Interval Analysis for Computer Graphics", 1992, §3: boxes are halved until a Jacobian says
 //            that what they hold is one piece; ours is bounded at the corners
@@ -17,6 +18,7 @@
 #pragma once
 
 #include <array>
+#include <atomic>
 #include <memory>
 #include <vector>
 

@@ -88,20 +88,18 @@ ScratchFolder::~ScratchFolder() {
 }
 
 std::optional<int> run(const ChildProcess& process) {
+  using Clock = std::chrono::steady_clock;
   const pid_t child = start(process);
-  int status = 0;
-  if (!process.most_seconds) {
-    while (::waitpid(child, &status, 0) < 0 && errno == EINTR) {
-    }
-    return exit_code_of(status);
-  }
-  const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(*process.most_seconds);
+  const auto end = Clock::now() + std::chrono::seconds(process.most_seconds.value_or(0));
   auto pause = std::chrono::milliseconds(2);
+  int status = 0;
   while (::waitpid(child, &status, WNOHANG) == 0) {
-    if (std::chrono::steady_clock::now() > end) {
+    const bool is_stopped = process.stop != nullptr && *process.stop;
+    if (is_stopped || (process.most_seconds && Clock::now() > end)) {
       ::kill(child, SIGKILL);
       ::waitpid(child, &status, 0);
-      return std::nullopt;
+      if (!is_stopped) return std::nullopt;
+      throw Error(Error::Kind::failed, process.program.string(), "stopped");
     }
     std::this_thread::sleep_for(pause);
     pause = std::min(pause * 2, std::chrono::milliseconds(50));

@@ -2,6 +2,7 @@
 // Errors     Error{failed} naming the program or folder, where the system can't start or make it
 #pragma once
 
+#include <atomic>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -36,9 +37,11 @@ struct ChildProcess {
   std::filesystem::path log;          // replaced by what it says
   std::filesystem::path folder{};     // that it runs in; empty: this program's
   std::optional<int> most_seconds{};  // it is ended then
+  // Set from any thread: it is ended, and run() throws Error{failed}.
+  const std::atomic<bool>* stop = nullptr;
 };
 
-// Its exit code, 128 if a signal ended it; nothing if its time was over.
+// Waits for its end. Its exit code, 128 if a signal ended it; nothing if its time was over.
 std::optional<int> run(const ChildProcess& process);
 
 }  // namespace arris

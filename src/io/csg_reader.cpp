@@ -86,12 +86,14 @@ void add_objects(Scene& scene, std::vector<Part> parts) {
 
 }  // namespace
 
-CsgFiles csg_files_beside(const std::filesystem::path& file) {
+CsgFiles csg_files_beside(const std::filesystem::path& file, const std::atomic<bool>* stop) {
   CsgFiles files;
   files.folder = file.parent_path().string();
   files.load_model = [](const std::filesystem::path& path) { return load_scene(path); };
   if (const auto program = find_openscad()) {
-    files.make_mesh = [program](const std::string& csg) { return mesh_by_openscad(*program, csg); };
+    files.make_mesh = [program, stop](const std::string& csg) {
+      return mesh_by_openscad(*program, csg, stop);
+    };
   }
   return files;
 }
@@ -149,11 +151,11 @@ Scene read_scad(const std::filesystem::path& path, const LoadOptions& options) {
                 "reading .scad files takes OpenSCAD: install it so that the program openscad is on "
                 "the PATH, or export the model there as .csg");
   }
-  const OpenScadOutput output = flatten_by_openscad(*program, path);
+  const OpenScadOutput output = flatten_by_openscad(*program, path, options.stop);
   if (const auto* problem = std::get_if<std::string>(&output)) {
     throw Error(Error::Kind::input, file, *problem);
   }
-  CsgFiles files = csg_files_beside(path);
+  CsgFiles files = csg_files_beside(path, options.stop);
   files.name = name_from_file(file);
   return read_csg(std::get<std::vector<std::uint8_t>>(output), file + " as .csg", files, options);
 }

@@ -6,6 +6,7 @@
 // Cost       linear in the file as a rule; a run of openscad for each node that only it can make
 #pragma once
 
+#include <atomic>
 #include <cstdint>
 #include <filesystem>
 #include <span>
@@ -19,7 +20,8 @@ namespace arris {
 inline constexpr std::size_t kMaxCsgObjects = 256;
 
 // An installed openscad, and models in the folder of the file.
-CsgFiles csg_files_beside(const std::filesystem::path& file);
+CsgFiles csg_files_beside(const std::filesystem::path& file,
+                          const std::atomic<bool>* stop = nullptr);
 // Neither.
 CsgFiles no_csg_files();
 

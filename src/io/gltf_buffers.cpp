@@ -171,7 +171,7 @@ GlbParts split_glb(std::span<const std::uint8_t> bytes, const std::string& where
 }
 
 GltfBuffers load_gltf_buffers(const GltfDocument& document, std::span<const std::uint8_t> binary,
-                              const std::filesystem::path& base_directory,
+                              const std::optional<std::filesystem::path>& base_folder,
                               const std::string& where) {
   GltfBuffers result;
   std::map<std::string_view, std::span<const std::uint8_t>> by_uri;
@@ -186,7 +186,7 @@ GltfBuffers load_gltf_buffers(const GltfDocument& document, std::span<const std:
     if (buffer.uri) {
       const auto [entry, is_new] = by_uri.try_emplace(*buffer.uri);
       if (is_new) {
-        entry->second = result.loaded.emplace_back(load_uri(*buffer.uri, base_directory, place));
+        entry->second = result.loaded.emplace_back(load_uri(*buffer.uri, base_folder, place));
         result.total_bytes += entry->second.size();
       }
       bytes = entry->second;

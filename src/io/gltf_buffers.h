@@ -33,7 +33,7 @@ struct GltfBuffers {
 };
 
 GltfBuffers load_gltf_buffers(const GltfDocument& document, std::span<const std::uint8_t> binary,
-                              const std::filesystem::path& base_directory,
+                              const std::optional<std::filesystem::path>& base_folder,
                               const std::string& where);
 
 // Accessors may share bytes or stand for zeros, so a short file can describe much data. What

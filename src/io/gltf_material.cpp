@@ -47,8 +47,8 @@ GltfUvChoice choose_uvs(const GltfMaterial& material, std::vector<std::string>& 
 
 class TextureCache {
  public:
-  TextureCache(const GltfSource& source, const std::filesystem::path& base_directory)
-      : source_(source), base_directory_(base_directory) {}
+  TextureCache(const GltfSource& source, const std::optional<std::filesystem::path>& base_folder)
+      : source_(source), base_folder_(base_folder) {}
 
   struct Use {
     std::uint32_t image = 0;
@@ -90,7 +90,7 @@ class TextureCache {
     const std::string place =
         fmt::format("{}: images[{}] ({})", source_.where, index, in_quotes(image.name));
     if (image.uri) {
-      entry->second = decode_image(load_uri(*image.uri, base_directory_, place), place);
+      entry->second = decode_image(load_uri(*image.uri, base_folder_, place), place);
     } else {
       entry->second = decode_image(source_.buffers.views[*image.view], place);
     }
@@ -98,7 +98,7 @@ class TextureCache {
   }
 
   const GltfSource& source_;
-  const std::filesystem::path& base_directory_;
+  const std::optional<std::filesystem::path>& base_folder_;
   std::map<std::tuple<std::uint32_t, Texture::Wrap, Texture::Wrap, bool, bool>, TextureId> made_;
   std::map<std::uint32_t, Rgba8Image> images_;
   std::vector<Texture> textures_;
@@ -107,9 +107,9 @@ class TextureCache {
 }  // namespace
 
 GltfMaterials make_gltf_materials(const GltfSource& source,
-                                  const std::filesystem::path& base_directory) {
+                                  const std::optional<std::filesystem::path>& base_folder) {
   GltfMaterials result;
-  TextureCache cache(source, base_directory);
+  TextureCache cache(source, base_folder);
   for (const GltfMaterial& from : source.document.materials) {
     Material material = from.factors;
     for (const SlotUse& slot : kSlots) {

@@ -5,6 +5,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 
 #include "io/gltf_buffers.h"
 #include "io/gltf_mesh.h"
@@ -19,6 +20,6 @@ struct GltfMaterials {
 };
 
 GltfMaterials make_gltf_materials(const GltfSource& source,
-                                  const std::filesystem::path& base_directory);
+                                  const std::optional<std::filesystem::path>& base_folder);
 
 }  // namespace arris

@@ -185,14 +185,14 @@ class SceneBuilder {
 }  // namespace
 
 Scene read_gltf(std::span<const std::uint8_t> bytes, const std::string& name,
-                const std::filesystem::path& base_directory) {
+                const std::optional<std::filesystem::path>& base_folder) {
   GlbParts parts{{reinterpret_cast<const char*>(bytes.data()), bytes.size()}, {}};
   if (is_glb(bytes)) parts = split_glb(bytes, name);
   const GltfDocument document = parse_gltf_document(parts.json, name);
-  const GltfBuffers buffers = load_gltf_buffers(document, parts.binary, base_directory, name);
+  const GltfBuffers buffers = load_gltf_buffers(document, parts.binary, base_folder, name);
   DecodeBudget budget(buffers.total_bytes + parts.json.size(), name);
   const GltfSource source{document, buffers, budget, name};
-  GltfMaterials materials = make_gltf_materials(source, base_directory);
+  GltfMaterials materials = make_gltf_materials(source, base_folder);
   GltfMeshes meshes = make_gltf_meshes(source, materials.uv_choices);
   SceneBuilder builder(document, name);
   builder.add_materials(std::move(materials));

@@ -14,6 +14,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <span>
 #include <string>
 
@@ -21,8 +22,9 @@
 
 namespace arris {
 
-// `name` is the file's name for errors; buffers and images are looked up in `base_directory`.
+// `name` is the file's name for errors; buffers and images are looked up in `base_folder`;
+// without one they must be in the file itself.
 Scene read_gltf(std::span<const std::uint8_t> bytes, const std::string& name,
-                const std::filesystem::path& base_directory);
+                const std::optional<std::filesystem::path>& base_folder);
 
 }  // namespace arris

@@ -1,5 +1,6 @@
 // load_scene.cpp — the table of formats and the way from a path to a scene
 #include <algorithm>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -34,6 +35,10 @@ struct SceneFile {
   }
 };
 
+std::optional<fs::path> folder_of(const SceneFile& file) {
+  return file.is_alone() ? std::nullopt : std::optional(file.path.parent_path());
+}
+
 // Of formats that are nothing without other files.
 void refuse_alone(const SceneFile& file) {
   if (!file.is_alone()) return;
@@ -58,17 +63,18 @@ constexpr Format kFormats[] = {
      nullptr},
     {".ply", "PLY", [](const SceneFile& f) { return read_ply(f.bytes, f.name); }, looks_like_ply},
     {".off", "OFF", [](const SceneFile& f) { return read_off(f.bytes, f.name); }, looks_like_off},
-    {".step", "STEP", [](const SceneFile& f) { return read_step(f.bytes, f.name); },
+    {".step", "STEP", [](const SceneFile& f) { return read_step(f.bytes, f.name, f.options.stop); },
      looks_like_step},
-    {".stp", "STEP", [](const SceneFile& f) { return read_step(f.bytes, f.name); },
+    {".stp", "STEP", [](const SceneFile& f) { return read_step(f.bytes, f.name, f.options.stop); },
      looks_like_step},
-    {".glb", "GLB",
-     [](const SceneFile& f) { return read_gltf(f.bytes, f.name, f.path.parent_path()); }, is_glb},
-    {".gltf", "glTF",
-     [](const SceneFile& f) { return read_gltf(f.bytes, f.name, f.path.parent_path()); }, nullptr},
+    {".glb", "GLB", [](const SceneFile& f) { return read_gltf(f.bytes, f.name, folder_of(f)); },
+     is_glb},
+    {".gltf", "glTF", [](const SceneFile& f) { return read_gltf(f.bytes, f.name, folder_of(f)); },
+     nullptr},
     {".csg", "CSG",
      [](const SceneFile& f) {
-       return read_csg(f.bytes, f.name, f.is_alone() ? no_csg_files() : csg_files_beside(f.path),
+       return read_csg(f.bytes, f.name,
+                       f.is_alone() ? no_csg_files() : csg_files_beside(f.path, f.options.stop),
                        f.options);
      },
      nullptr},

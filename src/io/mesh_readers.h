@@ -30,8 +30,9 @@ bool looks_like_ply(std::span<const std::uint8_t> bytes);
 Scene read_off(std::span<const std::uint8_t> bytes, const std::string& file);
 bool looks_like_off(std::span<const std::uint8_t> bytes);
 
-// Needs arris-step; kind failed where that is not installed.
-Scene read_step(std::span<const std::uint8_t> bytes, const std::string& file);
+// Needs arris-step; kind failed where that is not installed, or when `stop` is set.
+Scene read_step(std::span<const std::uint8_t> bytes, const std::string& file,
+                const std::atomic<bool>* stop = nullptr);
 bool looks_like_step(std::span<const std::uint8_t> bytes);
 
 // How the OBJ reader reaches the files that a model names, relative to the model; each returns nothing

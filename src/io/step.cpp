@@ -70,7 +70,8 @@ void name_after_file(Scene& scene, const std::string& file) {
 
 }  // namespace
 
-Scene read_step(std::span<const std::uint8_t> bytes, const std::string& file) {
+Scene read_step(std::span<const std::uint8_t> bytes, const std::string& file,
+                const std::atomic<bool>* stop) {
   check_step_syntax(bytes, file);
   const std::optional<fs::path> program = find_arris_step();
   if (!program) {
@@ -86,7 +87,7 @@ Scene read_step(std::span<const std::uint8_t> bytes, const std::string& file) {
   write_file_whole(input, bytes);
   const int most_seconds = kMostSeconds + kMostSecondsPerMegabyte * int(bytes.size() >> 20);
   const std::optional<int> code =
-      run({*program, {input.string(), output.string()}, folder / "log", {}, most_seconds});
+      run({*program, {input.string(), output.string()}, folder / "log", {}, most_seconds, stop});
   if (!code) {
     throw problem(file,
                   fmt::format("takes Open CASCADE longer than {} seconds, which is the limit; "

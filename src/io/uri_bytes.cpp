@@ -83,9 +83,14 @@ std::string decode_percent(std::string_view text) {
 }
 
 std::vector<std::uint8_t> load_uri(std::string_view uri,
-                                   const std::filesystem::path& base_directory,
+                                   const std::optional<std::filesystem::path>& base_folder,
                                    const std::string& where) {
   if (uri.starts_with("data:")) return decode_data_uri(uri, where);
+  if (!base_folder) {
+    throw Error(Error::Kind::input, where,
+                in_quotes(decode_percent(uri)) +
+                    " is another file, which may not be read here; put all into one .glb");
+  }
   if (has_scheme(uri)) {
     throw Error(Error::Kind::input, where,
                 fmt::format("{} is not a file beside the model; put it there", in_quotes(uri)));
@@ -102,7 +107,7 @@ std::vector<std::uint8_t> load_uri(std::string_view uri,
         fmt::format("{} is outside the model's folder; put the file in it", in_quotes(name)));
   }
   try {
-    return read_file_bytes(base_directory / file);
+    return read_file_bytes(*base_folder / file);
   } catch (const Error& error) {
     throw Error(error.kind(), where, error.what());
   }

@@ -6,15 +6,16 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
 namespace arris {
 
-// `where` is named in errors.
+// `where` is named in errors. Without a folder only data: URIs are read.
 std::vector<std::uint8_t> load_uri(std::string_view uri,
-                                   const std::filesystem::path& base_directory,
+                                   const std::optional<std::filesystem::path>& base_folder,
                                    const std::string& where);
 
 // RFC 4648; padding may be missing. Throws Error.

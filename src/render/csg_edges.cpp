@@ -87,4 +87,11 @@ Box3d CsgEdges::bounds() const {
   return probe_->tree().is_empty() ? Box3d{} : probe_->tree().bounds();
 }
 
+std::shared_ptr<const CsgEdges> SharedCsgEdges::find(const std::shared_ptr<const CsgCells>& cells,
+                                                     int threads, const std::atomic<bool>* stop) {
+  const std::lock_guard lock(mutex_);
+  if (!edges_) edges_ = std::make_shared<const CsgEdges>(cells, threads, stop);
+  return edges_;
+}
+
 }  // namespace arris

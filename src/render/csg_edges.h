@@ -6,6 +6,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <mutex>
 #include <vector>
 
 #include "csg/crease_finder.h"
@@ -39,6 +40,18 @@ class CsgEdges {
   std::shared_ptr<const SmoothPatches> patches_;
   CsgOutline outline_;
   std::vector<CreaseSegment> creases_;
+};
+
+// Those of one solid, found when they are first asked for. Any thread may ask; who comes meanwhile waits.
+class SharedCsgEdges {
+ public:
+  // Precondition: always the same cells. Throws Error{failed} once `stop` is set, and finds them when asked again.
+  std::shared_ptr<const CsgEdges> find(const std::shared_ptr<const CsgCells>& cells, int threads,
+                                       const std::atomic<bool>* stop);
+
+ private:
+  std::mutex mutex_;
+  std::shared_ptr<const CsgEdges> edges_;
 };
 
 }  // namespace arris

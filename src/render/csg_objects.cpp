@@ -6,6 +6,7 @@
 
 #include "base/check.h"
 #include "csg/csg_cells.h"
+#include "render/csg_edges.h"
 #include "render/embree_hit.h"
 
 namespace arris {
@@ -137,11 +138,16 @@ Box3f world_box(const Affine3d& m, const Box3d& box) {
   return out;
 }
 
-std::shared_ptr<CsgObject> place_csg(std::shared_ptr<const CsgCells> cells, const Scene& scene,
-                                     ObjectId id) {
+struct CsgParts {
+  std::shared_ptr<const CsgCells> cells;
+  std::shared_ptr<SharedCsgEdges> edges;
+};
+
+std::shared_ptr<CsgObject> place_csg(CsgParts parts, const Scene& scene, ObjectId id) {
   const Affine3d object_from_world = inverse(scene.objects[id.index].world_from_object);
-  return std::make_shared<CsgObject>(
-      CsgObject{std::move(cells), id, object_from_world, transpose(object_from_world.linear), 0});
+  return std::make_shared<CsgObject>(CsgObject{std::move(parts.cells), std::move(parts.edges), id,
+                                               object_from_world,
+                                               transpose(object_from_world.linear), 0});
 }
 
 BoxGeometry make_boxes(const Scene& scene, const CsgObject& object) {
@@ -157,22 +163,37 @@ BoxGeometry make_boxes(const Scene& scene, const CsgObject& object) {
   return geometry;
 }
 
+// By trees; those that no object was made of are empty.
+std::vector<CsgParts> parts_of(const Scene& scene, const CsgSource* before) {
+  std::vector<CsgParts> parts(scene.csg_trees.size());
+  if (before == nullptr || !before->scene.csg_trees.is_same_as(scene.csg_trees)) return parts;
+  for (const std::shared_ptr<CsgObject>& object : before->objects.objects) {
+    parts[before->scene.objects[object->object.index].csg->index] = {object->cells, object->edges};
+  }
+  return parts;
+}
+
 }  // namespace
 
-CsgObjects make_csg_objects(const Scene& scene, int threads, const std::atomic<bool>* stop) {
+CsgObjects make_csg_objects(const Scene& scene, int threads, const std::atomic<bool>* stop,
+                            const CsgSource* before) {
   CsgObjects out;
-  std::vector<std::shared_ptr<const CsgCells>> cells(scene.csg_trees.size());
+  std::vector<CsgParts> all = parts_of(scene, before);
+  std::vector<bool> is_counted(all.size());
   for (std::uint32_t i = 0; i < scene.objects.size(); ++i) {
     const Object& object = scene.objects[i];
     if (!object.csg) continue;
-    std::shared_ptr<const CsgCells>& shared = cells[object.csg->index];
-    if (!shared) {
-      shared = std::make_shared<const CsgCells>(
-          std::make_shared<const CsgSolid>(scene.csg_trees[object.csg->index]),
-          "object \"" + object.name + "\"", CellOptions{.threads = threads, .stop = stop});
-      out.bytes += shared->bytes();
+    const std::uint32_t tree = object.csg->index;
+    CsgParts& parts = all[tree];
+    if (!parts.cells) {
+      parts.cells = std::make_shared<const CsgCells>(
+          std::make_shared<const CsgSolid>(scene.csg_trees[tree]), "object \"" + object.name + "\"",
+          CellOptions{.threads = threads, .stop = stop});
+      parts.edges = std::make_shared<SharedCsgEdges>();
     }
-    out.objects.push_back(place_csg(shared, scene, ObjectId{i}));
+    if (!is_counted[tree]) out.bytes += parts.cells->bytes();
+    is_counted[tree] = true;
+    out.objects.push_back(place_csg(parts, scene, ObjectId{i}));
   }
   return out;
 }
@@ -189,7 +210,7 @@ CsgObjects move_csg_objects(const CsgObjects& before, const Scene& scene_before,
       out.objects.push_back(object);
       continue;
     }
-    out.objects.push_back(place_csg(object->cells, moved, object->object));
+    out.objects.push_back(place_csg({object->cells, object->edges}, moved, object->object));
     out.objects.back()->record = object->record;
   }
   out.by_record = before.by_record;

@@ -23,9 +23,11 @@
 namespace arris {
 
 class CsgCells;
+class SharedCsgEdges;
 
 struct CsgObject {
   std::shared_ptr<const CsgCells> cells;
+  std::shared_ptr<SharedCsgEdges> edges;  // of the same cells
   ObjectId object;
   Affine3d object_from_world;
   Mat3d world_from_object_normal;
@@ -38,9 +40,15 @@ struct CsgObjects {
   std::uint64_t bytes = 0;
 };
 
+// `before`: of a scene that may have the same trees, whose cells and edges are then shared; null: of none.
 // Errors: Error{input} naming the object, for endless solids; Error{failed} once `stop` is set.
+struct CsgSource {
+  const Scene& scene;
+  const CsgObjects& objects;
+};
 CsgObjects make_csg_objects(const Scene& scene, int threads,
-                            const std::atomic<bool>* stop = nullptr);
+                            const std::atomic<bool>* stop = nullptr,
+                            const CsgSource* before = nullptr);
 // The same with objects in other places: those that have not moved are shared.
 CsgObjects move_csg_objects(const CsgObjects& before, const Scene& scene_before,
                             const Scene& moved);

@@ -242,14 +242,11 @@ void EdgeObjects::make_tasks() {
   }
 }
 
-// Objects that are made of one tree share its edges.
+// Objects that are made of one tree share its edges, and so do scenes.
 void EdgeObjects::find_solids(const PreparedScene& prepared, int threads,
                               const std::atomic<bool>* stop) {
-  std::map<const CsgCells*, std::shared_ptr<const CsgEdges>> found;
   for (const std::shared_ptr<CsgObject>& object : prepared.geometry().csg.objects) {
-    std::shared_ptr<const CsgEdges>& edges = found[object->cells.get()];
-    if (!edges) edges = std::make_shared<const CsgEdges>(object->cells, threads, stop);
-    objects_[object->object.index].solid = edges;
+    objects_[object->object.index].solid = object->edges->find(object->cells, threads, stop);
   }
 }
 

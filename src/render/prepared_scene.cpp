@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <optional>
 #include <string>
 
 #include "arris/error.h"
@@ -204,10 +205,16 @@ std::shared_ptr<const PreparedScene> prepare_scene(Scene scene, const PrepareOpt
   end_if_stopped(options.stop);
   MeshedBevels meshed = mesh_bevels(scene, scene.rounding, options.threads);
   end_if_stopped(options.stop);
+  std::optional<CsgSource> solids;
+  if (options.solids_of != nullptr) {
+    const SceneGeometry& of = options.solids_of->geometry();
+    solids.emplace(CsgSource{of.scene, of.csg});
+  }
   auto geometry = std::make_shared<SceneGeometry>(
       std::move(scene),
       EmbreeSceneOptions{
-          .threads = options.threads, .placement = options.placement, .stop = options.stop});
+          .threads = options.threads, .placement = options.placement, .stop = options.stop},
+      solids ? &*solids : nullptr);
   geometry->build_seconds =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count() -
       meshed.seconds;

@@ -88,8 +88,9 @@ SceneBounds light_bounds(const std::vector<Bounds>& objects) {
 
 }  // namespace
 
-PlacedGeometry::PlacedGeometry(const Scene& scene, const EmbreeSceneOptions& options)
-    : csg(make_csg_objects(scene, options.threads, options.stop)),
+PlacedGeometry::PlacedGeometry(const Scene& scene, const EmbreeSceneOptions& options,
+                               const CsgSource* solids)
+    : csg(make_csg_objects(scene, options.threads, options.stop, solids)),
       embree(scene, options, make_csg_boxes(scene, csg)) {
   set_csg_records(csg, embree);
   for (const Object& object : scene.objects) bounds.push_back(world_bounds(scene, object));
@@ -107,9 +108,10 @@ PlacedGeometry::PlacedGeometry(const PlacedGeometry& before, const Scene& scene_
   }
 }
 
-SceneGeometry::SceneGeometry(Scene described, const EmbreeSceneOptions& options)
+SceneGeometry::SceneGeometry(Scene described, const EmbreeSceneOptions& options,
+                             const CsgSource* solids)
     : scene(std::move(described)),
-      placed(std::make_shared<const PlacedGeometry>(scene, options)),
+      placed(std::make_shared<const PlacedGeometry>(scene, options, solids)),
       csg(placed->csg),
       embree(placed->embree) {
   std::transform(scene.materials.read().begin(), scene.materials.read().end(),

@@ -42,7 +42,9 @@ struct PlacedGeometry {
   EmbreeScene embree;
   std::vector<Bounds> bounds;  // of every object, in the world
 
-  PlacedGeometry(const Scene& scene, const EmbreeSceneOptions& options);
+  // solids: of a scene that may have the same; null: none.
+  PlacedGeometry(const Scene& scene, const EmbreeSceneOptions& options,
+                 const CsgSource* solids = nullptr);
   // Objects in other places. Precondition: `before` is movable.
   PlacedGeometry(const PlacedGeometry& before, const Scene& scene_before, const Scene& moved);
 };
@@ -60,7 +62,8 @@ struct SceneGeometry {
   double build_seconds = 0;
 
   // Precondition: a valid scene with camera and environment.
-  SceneGeometry(Scene described, const EmbreeSceneOptions& options);
+  SceneGeometry(Scene described, const EmbreeSceneOptions& options,
+                const CsgSource* solids = nullptr);
   // The same materials and environment, other camera, transforms and lights.
   SceneGeometry(const SceneGeometry& before, Scene moved,
                 std::shared_ptr<const PlacedGeometry> moved_placed);

@@ -3,8 +3,14 @@
 
 #include <gtest/gtest.h>
 
+#include <atomic>
+#include <chrono>
 #include <cmath>
+#include <string>
+#include <thread>
 
+#include "arris/error.h"
+#include "io/csg_reader.h"
 #include "support/csg_oracle.h"
 #include "support/csg_picture.h"
 
@@ -226,6 +232,24 @@ TEST(csg_edges, changes_seen_by_rays_lie_on_edges) {
   }
   EXPECT_GT(all.jumps, 4000U);
   expect_shares(all);
+}
+
+// A single cell of it takes minutes.
+TEST(csg_edges, looking_for_them_ends_soon_when_it_is_stopped) {
+  const std::string text =
+      "linear_extrude(height = 10, twist = 1e9, slices = 30000) { square(size = [1, 1]); }";
+  const std::span bytes{reinterpret_cast<const std::uint8_t*>(text.data()), text.size()};
+  const Scene scene = read_csg(bytes, "twist.csg", no_csg_files());
+  const auto cells = cells_of(scene.csg_trees[0]);
+  std::atomic<bool> stop = false;
+  std::thread stopper([&] {
+    std::this_thread::sleep_for(std::chrono::milliseconds(500));
+    stop = true;
+  });
+  const auto begin = std::chrono::steady_clock::now();
+  EXPECT_THROW(CsgEdges(cells, 2, &stop), Error);
+  stopper.join();
+  EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(15));
 }
 
 }  // namespace

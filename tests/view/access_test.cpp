@@ -76,5 +76,14 @@ TEST(ViewAccess, uploads_keep_nothing_but_a_known_extension) {
   }
 }
 
+TEST(ViewAccess, scene_files_are_called_as_the_page_saves_them_if_a_shell_takes_that) {
+  EXPECT_EQ(saved_scene_name("my_part-2.toml"), "my_part-2.toml");
+  for (const std::string name :
+       {"", ".toml", "-rf.toml", "a b.toml", "$(x).toml", "../a.toml", "a.toml\nb.toml", "a.stl"}) {
+    EXPECT_EQ(saved_scene_name(name), "scene.toml") << name;
+  }
+  EXPECT_EQ(saved_scene_name(std::string(200, 'a') + ".toml"), "scene.toml");
+}
+
 }  // namespace
 }  // namespace arris::view

@@ -169,6 +169,22 @@ TEST(ViewProgram, says_that_a_file_was_deleted_and_goes_on_when_it_is_back) {
   }
 }
 
+TEST(ViewProgram, says_nothing_more_of_a_file_that_is_shown_no_longer) {
+  const test::Workplace place;
+  const RunningView view(place, {(place / "cube.stl").string(), "--watch", "--allow-upload"});
+  WebSocket socket(view.port(), view.token());
+  socket.send({{"type", "hello"}, {"size", {96, 64}}});
+  socket.read_frame();
+  std::filesystem::remove(place / "cube.stl");
+  socket.read_text("error");
+  const std::string target = "/model?name=large.stl&t=" + view.token();
+  EXPECT_EQ(test::fetch(view.port(), test::Request(target).post(test::cube_stl(5))).status, 204);
+  WebSocket other(view.port(), view.token());
+  const auto first = other.read();
+  ASSERT_TRUE(first);
+  EXPECT_EQ(nlohmann::json::parse(first->payload)["type"], "scene");
+}
+
 void write_program(const std::filesystem::path& file, const std::string& text) {
   test::write_text(file, "#!/bin/sh\n" + text);
   std::filesystem::permissions(file, std::filesystem::perms::owner_all);
@@ -195,7 +211,16 @@ class OnPath {
   std::string before_;
 };
 
-TEST(ViewProgram, waits_for_nothing_that_cannot_be_stopped) {
+// Folders of its own that a program has left in `folder`.
+int count_left(const std::filesystem::path& folder) {
+  int count = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(folder)) {
+    count += entry.path().filename().string().starts_with("arris-") ? 1 : 0;
+  }
+  return count;
+}
+
+TEST(ViewProgram, programs_that_it_runs_end_with_it_and_hold_no_connection) {
   const test::Workplace place;
   const std::filesystem::path said = place / "said";
   write_program(
@@ -203,7 +228,9 @@ TEST(ViewProgram, waits_for_nothing_that_cannot_be_stopped) {
       fmt::format("echo $$ > '{0}.new'; mv '{0}.new' '{0}'; exec sleep 100\n", said.string()));
   test::write_text(place / "model.csg", "cube(size = [1, 1, 1]);\n");
   const OnPath path(place / ".");
+  ::setenv("TMPDIR", (place / ".").c_str(), 1);
   RunningView view(place, {(place / "model.csg").string(), "--watch"});
+  ::unsetenv("TMPDIR");
   WebSocket socket(view.port(), view.token());
   socket.send({{"type", "hello"}, {"size", {96, 64}}});
   socket.read_frame();
@@ -213,9 +240,30 @@ TEST(ViewProgram, waits_for_nothing_that_cannot_be_stopped) {
       "minkowski() { difference() { cube(size = [1, 1, 1]); cube(size = [0.5, 2, 2]); } "
       "sphere(r = 0.1); }\n");
   const pid_t openscad = std::stoi(wait_for(said));
+  EXPECT_EQ(count_left(place / "."), 1);
+  const std::filesystem::path open_files = fmt::format("/proc/{}/fd", openscad);
+  for (const auto& file : std::filesystem::directory_iterator(open_files)) {
+    const std::string name = std::filesystem::read_symlink(file).string();
+    EXPECT_THAT(name, testing::Not(HasSubstr("socket"))) << file.path();
+  }
   view.signal(SIGTERM);
   EXPECT_EQ(view.wait(), 0);
-  EXPECT_EQ(::kill(openscad, SIGKILL), 0) << "it is still at work";
+  EXPECT_NE(::kill(openscad, SIGKILL), 0) << "it is still at work";
+  EXPECT_EQ(count_left(place / "."), 0);
+}
+
+TEST(ViewProgram, ends_when_it_is_asked_to_before_there_is_an_address) {
+  const test::Workplace place;
+  write_program(place / "openscad", "echo $$ > said; exec sleep 100\n");
+  test::write_text(place / "model.scad", "cube(1);\n");
+  std::filesystem::create_directory(place / "tmp");
+  const test::Outcome outcome = place.shell(fmt::format(
+      "PATH=$PWD:$PATH TMPDIR=$PWD/tmp '{}/arris' view model.scad --no-browser --port 0 & view=$!; "
+      "while [ ! -s said ]; do sleep 0.02; done; kill -TERM $view; wait $view; "
+      "echo \"ended $?\"; kill -0 $(cat said) && echo alive",
+      ARRIS_BINARY_DIR));
+  EXPECT_EQ(outcome.out, "ended 1\n") << outcome.err;
+  EXPECT_EQ(count_left(place / "tmp"), 0);
 }
 
 TEST(ViewProgram, leaves_no_dead_browser) {
@@ -240,6 +288,13 @@ TEST(ViewProgram, keeps_the_token_that_it_is_given) {
   EXPECT_EQ(view.token(), "a-token_of-mine-0123");
 }
 
+TEST(ViewProgram, lists_materials_as_render_does) {
+  const test::Workplace place;
+  const test::Outcome list = place.arris("view --material list");
+  EXPECT_EQ(list.code, 0) << list.err;
+  EXPECT_EQ(list.out, place.arris("render --material list").out);
+}
+
 TEST(ViewProgram, bad_input_and_options_are_errors_before_an_address_is_printed) {
   const test::Workplace place;
   for (const auto& [words, text] : std::initializer_list<std::pair<const char*, const char*>>{
@@ -248,6 +303,7 @@ TEST(ViewProgram, bad_input_and_options_are_errors_before_an_address_is_printed)
            {"view cube.stl --round 5", "radius"},
            {"view cube.stl --token short", "16"},
            {"view cube.stl --host no.such.host.invalid --no-browser", "--host"},
+           {"view \"\"", "INPUT"},
            {"view - --watch", "--watch"}}) {
     const test::Outcome outcome = place.arris(words);
     EXPECT_EQ(outcome.code, 2) << words;

@@ -155,7 +155,7 @@ TEST(ViewProtocol, refuses_what_is_out_of_range) {
            R"({"type":"camera","position":[NaN,0,0],"target":[0,0,0],"up":[0,0,1],"fov":35})",
            R"({"type":"rounding","radius":0})",
            R"({"type":"rounding","radius":-1})",
-           R"({"type":"rounding","method":"mesh"})",
+           R"({"type":"rounding","method":"mesh:3"})",
            R"({"type":"rounding","min_angle":181})",
            R"({"type":"object","id":0,"matrix":[[1,0,0,0],[0,1,0,0],[0,0,0,0],[0,0,0,1]]})",
            R"({"type":"object","id":0,"matrix":[[1,0,0,0],[0,1,0,0],[0,0,1,0],[0,0,0,2]]})",

@@ -167,6 +167,7 @@ TEST(ViewMailbox, refuses_what_is_too_much) {
     taken += mailbox.put(make_input(1, id, object)) ? 1 : 0;
   }
   EXPECT_EQ(taken, kMostInputs);
+  EXPECT_TRUE(mailbox.put(make_input(2, 1, SetCamera{}))) << "another one's flood is not its own";
 }
 
 }  // namespace

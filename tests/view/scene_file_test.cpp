@@ -224,11 +224,12 @@ void change(const ViewModel& model, ViewEdits& edits, std::mt19937& random) {
       rounding.min_angle = radians(90 * number(random));
       rounding.edges = RoundEdges::both;
       return apply_message(model, rounding, edits);
-    case 5:
-      return apply_message(
-          model,
-          SetLight{LightChoice(pick(4)), number(random), std::floor(number(random) * 1e3) / 10},
-          edits);
+    case 5: {
+      const std::vector<LightChoice> lightings = lightings_of(model);
+      const LightChoice choice = lightings[pick(unsigned(lightings.size()))];
+      const double rotation = std::floor(number(random) * 1e3) / 10;
+      return apply_message(model, SetLight{choice, number(random), rotation}, edits);
+    }
     case 6:
       return apply_message(model, pick(2) == 0 ? SetMaterial{"brass"} : SetMaterial{}, edits);
     case 7:

@@ -54,8 +54,8 @@ class ViewServerTest : public testing::Test {
     renderer.threads = 1;
     renderer.rest_after = rest_after_;
     renderer.upload = settings.allow_upload;
-    renderer.open = [this](const std::filesystem::path& file, const std::string& name,
-                           bool is_foreign) {
+    renderer.open = [this](const ModelFile& what) {
+      const auto& [file, name, is_foreign, stop] = what;
       EXPECT_TRUE(is_foreign);
       if (name == "path.stl") throw Error(Error::Kind::input, file.string(), "is cut short");
       if (name == "slow.stl") {
@@ -305,6 +305,18 @@ TEST_F(ViewServerTest, clients_are_bounded_in_number) {
     sockets.back()->read_text("scene");
   }
   EXPECT_EQ(WebSocket(port_, token_).status(), 503);
+  // A page can't see that, and asks for the reason.
+  const auto reason = test::fetch(port_, Request(with_token("/ws")));
+  EXPECT_EQ(reason.status, 503);
+  EXPECT_THAT(reason.body, HasSubstr("8 pages look already; close one"));
+  // Who says goodbye makes room, also if the connection is not closed.
+  sockets[0]->send_frame(0x88, "\x03\xe8");
+  int status = 0;
+  for (int i = 0; status != 101 && i < 100; ++i) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    status = WebSocket(port_, token_).status();
+  }
+  EXPECT_EQ(status, 101);
 }
 
 TEST_F(ViewServerTest, answers_what_it_does_not_understand_and_goes_on) {
@@ -389,6 +401,29 @@ TEST_F(ViewServerTest, cameras_of_others_come_alone) {
   // The mover hears of it only in a scene that has changed otherwise.
   read_until_seq(*mover, seq);
   for (const json& heard : mover->texts()) EXPECT_NE(heard["type"], "camera");
+}
+
+TEST_F(ViewServerTest, says_where_the_file_has_an_object_whoever_has_moved_it) {
+  start();
+  auto socket = look();
+  socket->send({{"type", "object"},
+                {"seq", 1},
+                {"id", 1},
+                {"matrix", {{1, 0, 0, 7}, {0, 1, 0, 0}, {0, 0, 1, 0}, {0, 0, 0, 1}}}});
+  read_until_seq(*socket, 1);
+  const json scene = look()->read_text("scene");
+  EXPECT_EQ(scene["objects"][1]["matrix"][0][3], 7);
+  EXPECT_EQ(scene["objects"][1]["file_matrix"][0][3], 2);
+  EXPECT_EQ(scene["model"], 1);
+}
+
+TEST_F(ViewServerTest, says_that_a_still_view_is_path_traced) {
+  start();
+  auto socket = look();
+  json state;
+  do state = socket->read_text("state");
+  while (!state["converged"].get<bool>());
+  EXPECT_EQ(state["integrator"], "path");
 }
 
 TEST_F(ViewServerTest, scenes_say_what_of_a_client_is_in_them) {
@@ -527,7 +562,25 @@ TEST_F(ViewServerTest, saves_the_picture_and_the_scene) {
   const auto scene = test::fetch(port_, Request(with_token("/scene.toml")));
   EXPECT_EQ(scene.status, 200);
   EXPECT_THAT(scene.body, HasSubstr("file = \"boxes.obj\""));
+  EXPECT_THAT(scene.body, HasSubstr("arris render scene.toml"));
+  const auto named = test::fetch(port_, Request(with_token("/scene.toml?name=boxes.toml")));
+  EXPECT_THAT(named.body, HasSubstr("arris render boxes.toml"));
+  EXPECT_THAT(named.head, HasSubstr("filename=\"boxes.toml\""));
   EXPECT_EQ(test::fetch(port_, Request(with_token("/beam.png"))).status, 404);
+}
+
+TEST_F(ViewServerTest, many_ask_for_the_picture_at_once_and_get_the_same) {
+  start();
+  read_until_converged(*look());
+  std::vector<std::future<test::Response>> answers;
+  for (int i = 0; i < 16; ++i) {
+    answers.push_back(std::async(std::launch::async, [this] {
+      return test::fetch(port_, Request(with_token("/picture.png")));
+    }));
+  }
+  const std::string first = answers[0].get().body;
+  EXPECT_FALSE(first.empty());
+  for (std::size_t i = 1; i < answers.size(); ++i) EXPECT_EQ(answers[i].get().body, first);
 }
 
 TEST_F(ViewServerTest, says_why_there_is_no_scene_to_save) {
@@ -619,12 +672,14 @@ TEST_F(ViewServerTest, shows_models_that_are_dropped) {
   EXPECT_EQ(bad.status, 422);
   EXPECT_THAT(bad.body, HasSubstr("holds nothing"));
   EXPECT_EQ(post("path.stl").body.find("/tmp"), std::string::npos);
-  EXPECT_EQ(post("..%2Fnew.stl").status, 204);
-  for (;;) {
-    const json scene = socket->read_text("scene");
-    if (scene["name"] != "new.stl") continue;
+  // The same one again is another model, too.
+  for (const int number : {2, 3}) {
+    EXPECT_EQ(post("..%2Fnew.stl").status, 204);
+    json scene;
+    do scene = socket->read_text("scene");
+    while (scene["model"] != number);
+    EXPECT_EQ(scene["name"], "new.stl");
     EXPECT_EQ(scene["objects"].size(), 1U);
-    break;
   }
 }
 
@@ -661,8 +716,10 @@ TEST(ViewServer, listens_to_all_only_if_that_is_said) {
     EXPECT_THROW(ViewServer(make_boxes(), {}, settings), Error) << host;
   }
   ServerSettings settings;
-  settings.host = "0.0.0.0";
-  EXPECT_TRUE(ViewServer(make_boxes(), {}, settings).is_open_to_all());
+  for (const char* host : {"0.0.0.0", "::ffff:0.0.0.0"}) {
+    settings.host = host;
+    EXPECT_TRUE(ViewServer(make_boxes(), {}, settings).is_open_to_all()) << host;
+  }
 }
 
 TEST_F(ViewServerTest, ends_when_the_last_client_has_left) {

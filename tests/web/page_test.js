@@ -1,6 +1,7 @@
 // page_test.js — the page's rules that need no browser: gestures, keys, numbers, sizes, frame headers.
 import assert from "node:assert/strict";
 import test from "node:test";
+import { splitAfter } from "../../web/compare.js";
 import { parseHeader, retryDelay } from "../../web/connection.js";
 import { Errors } from "../../web/errors.js";
 import { savedPicture } from "../../web/files.js";
@@ -10,6 +11,7 @@ import { isIsolated } from "../../web/objects.js";
 import { formatNumber, logScale, parseRadius, radiusChange, radiusScale, usedRadius } from "../../web/panels.js";
 import { fitInto, hasShape, pictureSize } from "../../web/picture.js";
 import { Session } from "../../web/session.js";
+import { Stats } from "../../web/stats.js";
 
 const press = (button, keys = {}) => ({ button, ...keys });
 
@@ -217,6 +219,64 @@ test("a change that was refused, or another model, gives the server the word aga
   drag(4);
   tell(0.5, 0, { name: "b" });
   assert.equal(radius(), 0.5);
+});
+
+test("a file of the same name that was opened again is another model", (context) => {
+  context.mock.timers.enable({ apis: ["setTimeout"] });
+  const { session, tell, drag, radius } = openSession();
+  tell(1, 0, { model: 1 });
+  const isNew = [];
+  session.addEventListener("scene", ({ detail }) => detail?.fromServer && isNew.push(detail.isNew));
+  drag(4);
+  tell(0.5, 0, { model: 1 });
+  tell(0.5, 0, { model: 2 });
+  assert.deepEqual(isNew, [false, true]);
+  assert.equal(radius(), 0.5);
+});
+
+/** Stats with elements that keep what they are told. */
+function openStats(context) {
+  const elements = {};
+  const make = () => ({ textContent: "", parentElement: {}, replaceChildren() {} });
+  globalThis.document = { getElementById: (id) => (elements[id] ??= make()), createElement: make };
+  context.after(() => delete globalThis.document);
+  return { stats: new Stats(), text: (name) => elements[`stat-${name}`].textContent };
+}
+
+test("the latency of a picture that is finished is forgotten, as no later frame says that nothing moves", (context) => {
+  const { stats, text } = openStats(context);
+  const frame = { samples: 64, serverMs: 10, moving: true, converged: false };
+  stats.setFrame(frame, 20);
+  assert.equal(text("latency"), "20 ms");
+  stats.setFrame({ ...frame, moving: false }, null);
+  assert.equal(text("latency"), "–");
+  stats.setFrame({ ...frame, moving: false, converged: true }, 500);
+  assert.equal(text("latency"), "–");
+});
+
+test("says which integrator runs, and what the overlay shows then", (context) => {
+  const { stats, text } = openStats(context);
+  const state = { fps: 1, frame_ms: 1, seconds: 1, new_samples: 0, triangles: 12, rounded_edges: 0, converged: false };
+  const edges = { silhouette: 1, sharp: 2, shadow: 3 };
+  const classes = { empty: 0.5, simple: 0.5, complex: 0 };
+  const none = { empty: 0, simple: 0, complex: 0 };
+  const legend = (integrator, of) => {
+    stats.setState({ ...state, edges, integrator, classes: of });
+    return [text("integrator"), document.getElementById("legend-edges").textContent.includes("traced")];
+  };
+  assert.deepEqual(legend("edge-point", classes), ["edge-point", false]);
+  assert.deepEqual(legend("path", classes), ["path tracing", false]);
+  assert.deepEqual(legend("path", none), ["path tracing", true]);
+  assert.deepEqual(legend("traced", none), ["traced", true]);
+});
+
+test("keys move the line of a comparison", () => {
+  for (const key of ["ArrowRight", "ArrowUp"]) assert.ok(Math.abs(splitAfter(key, 0.5) - 0.52) < 1e-9);
+  for (const key of ["ArrowLeft", "ArrowDown"]) assert.ok(Math.abs(splitAfter(key, 0.5) - 0.48) < 1e-9);
+  assert.ok(Math.abs(splitAfter("PageUp", 0.5) - 0.6) < 1e-9);
+  assert.equal(splitAfter("PageDown", 0.05), 0);
+  assert.deepEqual([splitAfter("Home", 0.3), splitAfter("End", 0.3)], [0, 1]);
+  assert.equal(splitAfter("a", 0.3), undefined);
 });
 
 test("an error goes when a later message of its kind has worked, or the server says so", (context) => {

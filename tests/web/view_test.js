@@ -153,8 +153,14 @@ pageTest("click selects an object, and dragging with Alt moves it", {}, async ({
   assert.ok(Math.abs(matrix[0][3] - 4) < 0.3, `moved by ${matrix[0][3]}`);
   assert.ok(viewer.difference(before, await viewer.pictureOf(page)) > 0.5);
 
+  // The file knows where it was, also after the page has been loaded again.
+  traffic.sent.length = 0;
+  await page.reload();
+  await viewer.firstFrame(page);
+  await page.locator("#objects-section summary").click();
+  await page.locator("#object-list .name", { hasText: "cube" }).click();
   await page.locator("#object-back").click();
-  await viewer.until("put back", () => sentOf(traffic, "object").at(-1).matrix[0][3] === 0);
+  await viewer.until("put back", () => sentOf(traffic, "object").at(-1)?.matrix[0][3] === 0);
   await viewer.shown(page, traffic);
 });
 
@@ -257,11 +263,13 @@ pageTest("can be used with the keyboard alone", {}, async ({ page, traffic }) =>
   }
   await page.keyboard.press("ArrowRight");
   await viewer.until("a radius", () => typeof sentOf(traffic, "rounding").at(-1)?.radius === "number");
-  await page.keyboard.press("h");
-  await page.locator("#help").waitFor();
-  await viewer.screenshot(page, "help");
-  await page.keyboard.press("Escape");
-  await page.locator("#help").waitFor({ state: "hidden" });
+  for (const [opens, closes] of [["h", "h"], ["?", "?"], ["H", "Escape"]]) {
+    await page.keyboard.press(opens);
+    await page.locator("#help").waitFor();
+    if (closes === "Escape") await viewer.screenshot(page, "help");
+    await page.keyboard.press(closes);
+    await page.locator("#help").waitFor({ state: "hidden" });
+  }
 });
 
 /** Roles whose elements one acts on, as a screen reader is told of them. */
@@ -336,6 +344,79 @@ pageTest("an error goes when a value that fits was given", {}, async ({ page, tr
   const { rounding, radius_limit: limit } = scenes(traffic).at(-1);
   assert.ok(rounding.radius < limit && rounding.radius > 0.9 * limit, `${rounding.radius} of ${limit}`);
   assert.equal(await errors.count(), 0);
+});
+
+pageTest("4 and 6 roll the camera as in F3D", {}, async ({ page, traffic }) => {
+  const dot = (a, b) => a.reduce((sum, x, at) => sum + x * b[at], 0);
+  const { up, position, target } = scenes(traffic).at(-1).camera;
+  const forward = position.map((x, at) => target[at] - x);
+  const right = [0, 1, 2].map((at) => {
+    const [b, c] = [(at + 1) % 3, (at + 2) % 3];
+    return forward[b] * up[c] - forward[c] * up[b];
+  });
+  for (const [key, isLeft] of [["4", true], ["6", false], ["6", false]]) {
+    const sent = sentOf(traffic, "camera").length;
+    await page.keyboard.press(key);
+    await viewer.until("a camera", () => sentOf(traffic, "camera").length > sent);
+    const along = dot(sentOf(traffic, "camera").at(-1).up, right) / Math.hypot(...right);
+    const turned = Math.abs(along) > 0.9 ? along < 0 : null;
+    assert.equal(turned, sent === 1 ? null : isLeft);
+  }
+});
+
+pageTest("a number that is out of range is said to be, and replaced", {}, async ({ page, traffic }) => {
+  for (const [id, typed] of [["strength", "-1"], ["rotation", "9999"], ["min-angle", "200"]]) {
+    const field = page.locator(`#${id}`);
+    const before = await field.inputValue();
+    const sent = traffic.sent.filter(({ seq }) => seq).length;
+    await field.fill(typed);
+    await field.press("Enter");
+    assert.notEqual(await field.evaluate((input) => input.validationMessage), "");
+    await field.blur();
+    assert.equal(await field.inputValue(), before);
+    assert.equal(traffic.sent.filter(({ seq }) => seq).length, sent);
+  }
+});
+
+pageTest("the light can be rotated where that is seen", {}, async ({ page }) => {
+  assert.ok(await page.locator("#rotation-slider").isEnabled());
+  await page.locator("#lighting input[value=white]").check();
+  await page.locator("#rotation-note", { hasText: "from all sides alike" }).waitFor();
+  assert.ok(await page.locator("#rotation-slider").isDisabled());
+  assert.ok(await page.locator("#rotation").isDisabled());
+});
+
+for (const width of [800, 1000, 1090, 1130]) {
+  pageTest(`nothing lies on the figures at ${width}`, { width, height: 600 }, async ({ page }) => {
+    await page.locator("#hint").waitFor();
+    const bottom = async (selector) => {
+      const box = await page.locator(selector).boundingBox();
+      return box.y + box.height;
+    };
+    await viewer.until("figures", async () => (await page.locator("#stat-integrator").textContent()) !== "–");
+    const top = (await page.locator("#stats").boundingBox()).y;
+    assert.ok((await bottom("#hint")) <= top);
+    await page.keyboard.press("e");
+    await page.locator("#legend").waitFor();
+    assert.ok((await bottom("#legend")) <= top);
+    await page.keyboard.press("e");
+    await viewer.drop(page, "frame.stl", plateStl);
+    await page.locator(".message.error").waitFor();
+    assert.ok((await bottom("#messages")) <= top);
+  });
+}
+
+pageTest("there is no dark square before the first picture, and no motion where none is wanted", {
+  reducedMotion: "reduce",
+}, async ({ page }) => {
+  const shown = await page.evaluate(() => {
+    document.getElementById("stage").classList.add("stale");
+    document.getElementById("picture").removeAttribute("data-frame");
+    document.getElementById("busy").hidden = false;
+    const style = (selector) => getComputedStyle(document.querySelector(selector));
+    return [style("#picture").opacity, style(".spinner").animationName];
+  });
+  assert.deepEqual(shown, ["0", "none"]);
 });
 
 pageTest("the overlay says what its colours mean", {}, async ({ page }) => {
@@ -431,6 +512,61 @@ pageTest("a phone shows all without overflow, and fingers turn the model", phone
   await viewer.until("nearer cameras", () => sentOf(traffic, "camera").length > sent);
   await viewer.shown(page, traffic);
   assert.ok(distance(sentOf(traffic, "camera").at(-1)) < 0.7 * far);
+});
+
+/** A test with a page of a server of its own. */
+function serverTest(name, file, options, body) {
+  test(name, { timeout: 4 * viewer.PATIENCE_MS }, async () => {
+    const server = await viewer.startServer(file, { options });
+    const opened = await viewer.openPage(server.url);
+    try {
+      await viewer.firstFrame(opened.page);
+      await body({ ...opened, server });
+      assert.deepEqual(opened.errors, []);
+    } finally {
+      await opened.context.close();
+      await server.stop();
+    }
+  });
+}
+
+serverTest("a page that finds no room is told so, and comes in when there is", model, [], async ({ page, server }) => {
+  await page.evaluate((url) => {
+    window.others = [...Array(7)].map(() => new WebSocket(url));
+    return Promise.all(window.others.map((socket) => new Promise((open) => (socket.onopen = open))));
+  }, server.url.replace("http", "ws").replace("/?", "/ws?"));
+  const ninth = await viewer.openPage(server.url);
+  try {
+    await ninth.page.locator(".message", { hasText: "8 pages look already" }).waitFor();
+    await ninth.page.locator(".message", { hasText: "close one" }).waitFor();
+    await page.evaluate(() => window.others.forEach((socket) => socket.close()));
+    await ninth.page.getByRole("button", { name: "Try now" }).click();
+    await viewer.firstFrame(ninth.page);
+    await ninth.page.locator(".message", { hasText: "8 pages" }).waitFor({ state: "detached" });
+  } finally {
+    await ninth.context.close();
+  }
+});
+
+serverTest("bevel meshes are a method, and can be compared with", model, ["--round-method", "mesh:2"], async (opened) => {
+  const { page, traffic } = opened;
+  assert.ok(await page.locator("#method input[value=mesh]").isChecked());
+  await page.locator("#compare").selectOption("none");
+  await page.locator("#split").waitFor();
+  assert.equal(await page.locator("#split-left").textContent(), "Bevel mesh");
+  await viewer.shown(page, traffic);
+  await page.setViewportSize({ width: 700, height: 500 });
+  await viewer.until("another size", () => sentOf(traffic, "size").length > 0);
+  await viewer.shown(page, traffic);
+  assert.equal(await page.locator(".message.error").count(), 0);
+});
+
+const csgModel = viewer.writeModel("ball.csg", "sphere(r = 1);\n");
+serverTest("of CSG solids there is nothing to round", csgModel, [], async ({ page }) => {
+  await page.locator("#rounding-note").waitFor();
+  for (const selector of ["#radius-slider", "#method", "#edges", "#compare"]) {
+    assert.ok(await page.locator(selector).isHidden(), selector);
+  }
 });
 
 /** Status of a request that a browser would not make. */
