@@ -136,8 +136,6 @@ export class Files {
       const hadFocus = work.contains(document.activeElement);
       work.hidden = !state;
       progress.parentElement.hidden = state !== "working";
-      // A server that does not number its scenes knows no end before the end either.
-      stop.hidden = this.#session.scene?.seq === undefined;
       look.hidden = state !== "done";
       start.disabled = state === "working";
       if (!hadFocus || work.contains(document.activeElement)) return;

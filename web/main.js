@@ -89,7 +89,6 @@ function drawMarks() {
 }
 
 picture.addEventListener("drawn", ({ detail: header }) => {
-  session.setShownSeq(header.seq);
   view.setShownSeq(header.seq);
   stats.setFrame(header, connection.takeLatency(header.seq));
   files.setFrame(header);

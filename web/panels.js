@@ -188,12 +188,10 @@ export class Panels {
         : "The file’s lamps stay where they are: there is nothing to rotate.";
   }
 
-  /** Only those that the model has; a server that does not say: its file's own too, where it is lit so. */
-  #updateLightings({ lighting, lightings }) {
+  /** Only those that the model has. */
+  #updateLightings({ lightings }) {
     for (const input of byId("lighting").querySelectorAll("input")) {
-      const label = input.closest("label");
-      if (lightings) label.hidden = !lightings.includes(input.value) && input.value !== lighting;
-      else if (input.value === lighting) label.hidden = false;
+      input.closest("label").hidden = !lightings.includes(input.value);
     }
   }
 

@@ -1,18 +1,11 @@
 // session.js — the scene as this page knows it, between the controls and the connection.
 //
 // A change is shown at once and sent; what the server tells of the same thing is not taken over while a change is on
-// its way, or a slider would jump back under the hand. A scene says by its `seq` which changes are in it; that of
-// a server that does not is judged by the frames.
-
-// A message that changes nothing brings no frame; after this long the server's word counts again.
-const PENDING_MS = 2000;
+// its way, or a slider would jump back under the hand. A scene says by its `seq` which changes are in it.
 
 export class Session extends EventTarget {
   #connection;
-  #shownSeq = 0;
   #refusedSeq = 0;
-  #sentAt = new Map();
-  #timer = null;
 
   /** Dispatches "scene" when controls should show `scene` anew. */
   constructor(connection) {
@@ -25,35 +18,23 @@ export class Session extends EventTarget {
     });
   }
 
-  /** Frames tell which changes have arrived. */
-  setShownSeq(seq) {
-    this.#shownSeq = Math.max(this.#shownSeq, Math.min(seq, this.#connection.lastSeq));
-  }
-
   /** A change was refused: what the server tells next counts. */
   setRefused(seq) {
-    this.setShownSeq(seq ?? Infinity);
     this.#refusedSeq = Math.max(this.#refusedSeq, Math.min(seq ?? Infinity, this.#connection.lastSeq));
   }
 
   /** Whether a message of this type has left that a scene, the newest one unless given, knows nothing of. */
   isPending(type, scene = this.scene) {
-    const newest = this.#connection.newestSeq(type);
-    if (typeof scene?.seq === "number") return newest > Math.max(scene.seq, this.#refusedSeq);
-    const sentAt = this.#sentAt.get(type) ?? -Infinity;
-    return newest > this.#shownSeq && performance.now() - sentAt < PENDING_MS;
+    return this.#connection.newestSeq(type) > Math.max(scene?.seq ?? 0, this.#refusedSeq);
   }
 
   /** Sends a message of this type; `change` makes the same change in the page's own scene. */
   send(type, fields, change = null, key = type) {
     const seq = this.#connection.send(type, fields, key);
-    this.#sentAt.set(type, performance.now());
     if (this.scene && change) {
       change(this.scene);
       this.dispatchEvent(new Event("scene"));
     }
-    clearTimeout(this.#timer);
-    this.#timer = setTimeout(() => this.dispatchEvent(new Event("scene")), PENDING_MS + 100);
     return seq;
   }
 

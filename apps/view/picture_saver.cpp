@@ -38,7 +38,7 @@ void PictureSaver::put(std::uint64_t number, const Image& picture, double exposu
       return;
     }
     if (!saved_ || saved_->number != number) {
-      if (!waiting_) waiting_.emplace();
+      if (!waiting_) waiting_ = Job{};
       if (waiting_->picture.values.empty() || waiting_->number != number) {
         waiting_->picture = picture;
       }

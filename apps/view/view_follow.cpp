@@ -12,6 +12,7 @@
 #include "arris/error.h"
 #include "base/utf8_text.h"
 #include "render/prepared_scene.h"
+#include "view/carry_over.h"
 #include "view/view_loop.h"
 #include "view/view_report.h"
 

@@ -61,6 +61,8 @@ struct ViewEdits {
   bool overlay = false;
 };
 
+bool is_same(const Camera& a, const Camera& b);
+
 // studio, sky and white, and file where the model has lights of its own.
 std::vector<LightChoice> lightings_of(const ViewModel& model);
 // Whether the light's rotation is seen: lamps stay where the file has them, and even light is the same from all sides.
@@ -72,20 +74,6 @@ ViewEdits first_edits(const ViewModel& model);
 // A change of one kind. Throws for objects and materials that are not there, and views that are none; `edits` is
 // then as before. Messages that change nothing of the scene do nothing.
 void apply_message(const ViewModel& model, const MessageKind& message, ViewEdits& edits);
-
-// For each object of `now` the one of `before` that has its name; of several of one name the n-th is the n-th. Empty: it
-// is new.
-using ObjectMatch = std::vector<std::optional<std::size_t>>;
-ObjectMatch match_objects(const ViewModel& before, const ViewModel& now);
-
-// The edits of a model whose file has been read again: what was changed by hand stays, all else is as the file is now.
-// Of a framed view the camera is fit_camera()'s to find.
-ViewEdits carry_over(const ViewEdits& first_before, const ViewEdits& edits, ViewEdits first_now,
-                     const ObjectMatch& match);
-
-// Names of the objects of `before` that were changed by hand and match none.
-std::vector<std::string> lost_objects(const ViewModel& before, const ViewEdits& edits,
-                                      const ObjectMatch& match);
 
 // The camera that shows all visible objects; first: the model's own, or that shows all of it, as when it is opened.
 Camera frame_view(const ViewModel& model, const ViewEdits& edits, FrameView::From from);

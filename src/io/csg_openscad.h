@@ -2,8 +2,8 @@
 // What       flattens .scad files to .csg text, and makes meshes of what csg_evaluator.h can't
 // Guarantee  no shell; a program that takes longer than kOpenScadSeconds is ended; files of its own are in a
 //            folder that is removed; so is one that runs when `stop` is set
-// Errors     kind failed where processes or temporary files can't be made, or `stop` is set; what the program itself complains about is
-//            returned
+// Errors     kind failed where processes or temporary files can't be made, or `stop` is set; what the program itself
+//            complains about is returned
 #pragma once
 
 #include <atomic>

@@ -8,6 +8,7 @@
 // Cost       linear in the file, except polygons: see polygon.h
 #pragma once
 
+#include <atomic>
 #include <cstdint>
 #include <filesystem>
 #include <functional>

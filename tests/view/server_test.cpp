@@ -2,20 +2,15 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <atomic>
+#include <chrono>
 #include <future>
 #include <memory>
 #include <string>
 #include <thread>
+#include <vector>
 
-#include "arris/error.h"
-#include "geometry/shapes.h"
-#include "io/decode_image.h"
-#include "io/picture_jpeg.h"
 #include "io/picture_png.h"
-#include "support/temporary_folder.h"
-#include "support/web_client.h"
-#include "view/view_server.h"
+#include "view/server_fixture.h"
 
 namespace arris::view {
 namespace {
@@ -25,206 +20,6 @@ using test::Frame;
 using test::Request;
 using test::WebSocket;
 using testing::HasSubstr;
-
-ViewModel make_boxes() {
-  ViewModel model;
-  model.name = "boxes.obj";
-  model.scene.meshes.push_back(make_box_mesh({1, 1, 1}));
-  model.scene.materials.resize(1);
-  for (int i = 0; i < 2; ++i) {
-    Object object;
-    object.name = i == 0 ? "left" : "right";
-    object.world_from_object.translation = {2.0 * i, 0, 0};
-    model.scene.objects.push_back(object);
-  }
-  RoundingSettings rounding;
-  rounding.method = RoundMethod::exact;
-  rounding.radius = 0.1;
-  model.scene.rounding = rounding;
-  model.scene.image.width_px = 160;
-  model.scene.image.height_px = 90;
-  model.scene.image.samples_per_pixel = 4;
-  return model;
-}
-
-class ViewServerTest : public testing::Test {
- protected:
-  void start(ServerSettings settings = {}) {
-    ViewRendererSettings renderer;
-    renderer.threads = 1;
-    renderer.rest_after = rest_after_;
-    renderer.upload = settings.allow_upload;
-    renderer.open = [this](const ModelFile& what) {
-      const auto& [file, name, is_foreign, stop] = what;
-      EXPECT_TRUE(is_foreign);
-      if (name == "path.stl") throw Error(Error::Kind::input, file.string(), "is cut short");
-      if (name == "slow.stl") {
-        slow_began_ = true;
-        while (!slow_may_end_) std::this_thread::sleep_for(std::chrono::milliseconds(1));
-      }
-      if (name == "bad.stl") throw Error(Error::Kind::input, name, "holds nothing; draw something");
-      ViewModel model = make_boxes();
-      model.name = name;
-      model.file = file;
-      model.scene.objects.resize(1);
-      return model;
-    };
-    server_ = std::make_unique<ViewServer>(make_boxes(), renderer, settings);
-    const std::string address = server_->address();  // http://127.0.0.1:PORT/?t=TOKEN
-    port_ = std::uint16_t(std::stoi(address.substr(17)));
-    token_ = address.substr(address.find("t=") + 2);
-    thread_ = std::thread([this] { server_->run(); });
-  }
-  ~ViewServerTest() override { stop(); }
-  void stop() {
-    if (!thread_.joinable()) return;
-    server_->stop();
-    thread_.join();
-  }
-
-  [[nodiscard]] std::string with_token(const std::string& target) const {
-    return target + (target.find('?') == std::string::npos ? "?t=" : "&t=") + token_;
-  }
-  [[nodiscard]] std::unique_ptr<WebSocket> look() const {
-    auto socket = std::make_unique<WebSocket>(port_, token_);
-    EXPECT_EQ(socket->status(), 101);
-    socket->send({{"type", "hello"}, {"size", {160, 90}}});
-    return socket;
-  }
-  static json camera(std::uint32_t seq, double x) {
-    return {{"type", "camera"},    {"seq", seq},      {"position", {x, -5, 3}},
-            {"target", {1, 0, 0}}, {"up", {0, 0, 1}}, {"fov", 35}};
-  }
-  static Frame read_until_seq(WebSocket& socket, std::uint32_t seq) {
-    for (;;) {
-      Frame frame = socket.read_and_acknowledge();
-      if (frame.seq == seq) return frame;
-    }
-  }
-  static Frame read_until_converged(WebSocket& socket) {
-    for (;;) {
-      Frame frame = socket.read_and_acknowledge();
-      if (frame.is_converged()) return frame;
-    }
-  }
-  static Rgba8Image decode(const Frame& frame) {
-    return decode_jpeg(
-        {reinterpret_cast<const std::uint8_t*>(frame.jpeg.data()), frame.jpeg.size()}, "frame");
-  }
-
-  std::atomic<bool> slow_began_ = false, slow_may_end_ = false;
-  std::chrono::milliseconds rest_after_{30'000};
-  std::unique_ptr<ViewServer> server_;
-  std::thread thread_;
-  std::uint16_t port_ = 0;
-  std::string token_;
-};
-
-TEST_F(ViewServerTest, serves_the_page_to_those_who_know_the_token) {
-  start();
-  const auto page = test::fetch(port_, Request(with_token("/")));
-  EXPECT_EQ(page.status, 200);
-  EXPECT_THAT(page.body, HasSubstr("<html"));
-  EXPECT_THAT(page.head, HasSubstr("Content-Security-Policy: default-src 'self'"));
-  EXPECT_THAT(page.head, HasSubstr("X-Content-Type-Options: nosniff"));
-  EXPECT_THAT(page.head, HasSubstr("Referrer-Policy: no-referrer"));
-  EXPECT_THAT(page.head, HasSubstr("Cache-Control: no-store"));
-  for (const char* target : {"/", "/?t=", "/?t=0123456789abcdef0123456789abcdef", "/ws",
-                             "/picture.png", "/scene.toml", "/beam.png"}) {
-    EXPECT_EQ(test::fetch(port_, Request(target)).status, 403) << target;
-  }
-  for (const char* target : {"/../index.html", "/etc/passwd", "/web/index.html", "/nothing"}) {
-    EXPECT_EQ(test::fetch(port_, Request(with_token(target))).status, 404) << target;
-  }
-  EXPECT_EQ(test::fetch(port_, Request(with_token("/")).by("PUT")).status, 405);
-}
-
-TEST_F(ViewServerTest, refuses_other_hosts_and_origins) {
-  start();
-  EXPECT_EQ(test::fetch(port_, Request(with_token("/")).at_host("evil.example")).status, 403);
-  EXPECT_EQ(test::fetch(port_, Request(with_token("/")).at_host("localhost:9")).status, 200);
-  EXPECT_EQ(
-      test::fetch(port_, Request(with_token("/picture.png")).from("http://evil.example")).status,
-      403);
-  EXPECT_EQ(WebSocket(port_, token_, "http://evil.example").status(), 403);
-  EXPECT_EQ(WebSocket(port_, "0123456789abcdef0123456789abcdef").status(), 403);
-  EXPECT_EQ(WebSocket(port_, token_, fmt::format("http://127.0.0.1:{}", port_)).status(), 101);
-}
-
-TEST_F(ViewServerTest, refuses_requests_that_are_too_long) {
-  start();
-  const auto long_header =
-      test::fetch(port_, Request(with_token("/")).with("X: " + std::string(20000, 'a') + "\r\n"));
-  EXPECT_NE(long_header.status, 200);
-  const auto upload = test::fetch(
-      port_,
-      Request(with_token("/model?name=a.stl")).by("POST").with("Content-Length: 99999999999\r\n"));
-  EXPECT_EQ(upload.status, 413);
-}
-
-TEST_F(ViewServerTest, who_has_the_token_gets_in_past_any_number_without_it) {
-  start();
-  std::vector<std::unique_ptr<test::Connection>> strangers;
-  for (int i = 0; i < 200; ++i) {
-    strangers.push_back(std::make_unique<test::Connection>(port_));
-    strangers.back()->send("GET / HTTP/1.1\r\n");
-  }
-  EXPECT_EQ(test::fetch(port_, Request(with_token("/"))).status, 200);
-  read_until_converged(*look());
-  // The oldest had to go.
-  EXPECT_FALSE(strangers.front()->read(1));
-}
-
-TEST_F(ViewServerTest, requests_that_are_none_are_answered) {
-  start();
-  const auto answer_to = [&](const std::string& bytes) {
-    test::Connection connection(port_);
-    connection.send(bytes);
-    return connection.read_all();
-  };
-  for (const char* bytes : {"what is this\r\n\r\n", "GET / HTTP/7.5\r\n\r\n",
-                            "GET / HTTP/1.1\r\nno colon\r\n\r\n", "\x16\x03\x01 hello\r\n\r\n"}) {
-    const std::string answer = answer_to(bytes);
-    EXPECT_THAT(answer, testing::StartsWith("HTTP/1.1 400 ")) << bytes;
-    EXPECT_THAT(answer, HasSubstr("open the address")) << bytes;
-  }
-}
-
-TEST_F(ViewServerTest, refuses_two_hosts) {
-  start();
-  const auto answer = test::fetch(port_, Request(with_token("/")).with("Host: evil.example\r\n"));
-  EXPECT_EQ(answer.status, 400);
-  EXPECT_THAT(answer.body, HasSubstr("Host"));
-}
-
-TEST_F(ViewServerTest, says_that_a_request_came_too_slowly) {
-  ServerSettings settings;
-  settings.header_time = std::chrono::milliseconds(200);
-  start(settings);
-  test::Connection connection(port_);
-  connection.send("GET / HT");
-  EXPECT_THAT(connection.read_all(), testing::StartsWith("HTTP/1.1 408 "));
-}
-
-TEST_F(ViewServerTest, says_that_a_model_came_too_slowly) {
-  ServerSettings settings;
-  settings.allow_upload = true;
-  settings.body_time = std::chrono::milliseconds(1000);
-  start(settings);
-  const auto answer = test::fetch(
-      port_, Request(with_token("/model?name=a.stl")).by("POST").with("Content-Length: 100\r\n"));
-  EXPECT_EQ(answer.status, 408);
-  EXPECT_THAT(answer.body, HasSubstr("within 1 s; send a smaller one"));
-}
-
-TEST_F(ViewServerTest, keeps_the_token_that_it_is_given) {
-  ServerSettings settings;
-  settings.token = "a-token_of-mine-0123";
-  start(settings);
-  EXPECT_EQ(token_, settings.token);
-  EXPECT_EQ(test::fetch(port_, Request("/?t=a-token_of-mine-0123")).status, 200);
-  EXPECT_EQ(test::fetch(port_, Request("/?t=a-token_of-mine-0124")).status, 403);
-}
 
 TEST_F(ViewServerTest, says_what_it_shows_and_sends_frames_until_the_view_has_converged) {
   start();
@@ -706,20 +501,6 @@ TEST_F(ViewServerTest, a_model_that_comes_while_another_is_prepared_takes_its_pl
   EXPECT_EQ(replaced.status, 422);
   EXPECT_THAT(replaced.body, HasSubstr("another model was opened meanwhile"));
   EXPECT_EQ(next.get().status, 204);
-}
-
-// An empty variable in a script must not open the server to all.
-TEST(ViewServer, listens_to_all_only_if_that_is_said) {
-  for (const char* host : {"", "*", "0"}) {
-    ServerSettings settings;
-    settings.host = host;
-    EXPECT_THROW(ViewServer(make_boxes(), {}, settings), Error) << host;
-  }
-  ServerSettings settings;
-  for (const char* host : {"0.0.0.0", "::ffff:0.0.0.0"}) {
-    settings.host = host;
-    EXPECT_TRUE(ViewServer(make_boxes(), {}, settings).is_open_to_all()) << host;
-  }
 }
 
 TEST_F(ViewServerTest, ends_when_the_last_client_has_left) {

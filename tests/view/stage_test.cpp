@@ -12,6 +12,7 @@
 #include "geometry/shapes.h"
 #include "render/csg_objects.h"
 #include "render/prepared_scene.h"
+#include "view/carry_over.h"
 #include "view/shown_view.h"
 
 namespace arris::view {

@@ -196,8 +196,7 @@ function openSession() {
   return { connection, session, tell, drag, radius: () => session.scene.rounding.radius };
 }
 
-test("a slider that is dragged does not jump back to what scenes say that do not know of it", (context) => {
-  context.mock.timers.enable({ apis: ["setTimeout"] });
+test("a slider that is dragged does not jump back to what scenes say that do not know of it", () => {
   const { session, tell, drag, radius } = openSession();
   tell(1, 0);
   drag(2);
@@ -209,8 +208,7 @@ test("a slider that is dragged does not jump back to what scenes say that do not
   assert.equal(radius(), 2.9, "the server's word on it");
 });
 
-test("a change that was refused, or another model, gives the server the word again", (context) => {
-  context.mock.timers.enable({ apis: ["setTimeout"] });
+test("a change that was refused, or another model, gives the server the word again", () => {
   const { session, tell, drag, radius } = openSession();
   tell(1, 0);
   session.setRefused(drag(-1));
@@ -221,8 +219,7 @@ test("a change that was refused, or another model, gives the server the word aga
   assert.equal(radius(), 0.5);
 });
 
-test("a file of the same name that was opened again is another model", (context) => {
-  context.mock.timers.enable({ apis: ["setTimeout"] });
+test("a file of the same name that was opened again is another model", () => {
   const { session, tell, drag, radius } = openSession();
   tell(1, 0, { model: 1 });
   const isNew = [];
@@ -279,8 +276,7 @@ test("keys move the line of a comparison", () => {
   assert.equal(splitAfter("a", 0.3), undefined);
 });
 
-test("an error goes when a later message of its kind has worked, or the server says so", (context) => {
-  context.mock.timers.enable({ apis: ["setTimeout"] });
+test("an error goes when a later message of its kind has worked, or the server says so", () => {
   const { connection, session, tell, drag } = openSession();
   const shown = new Map();
   const messages = {
@@ -312,18 +308,6 @@ test("an error goes when a later message of its kind has worked, or the server s
   assert.deepEqual([...shown.keys()], ["rounding"]);
   connection.tell("error", { text: "" });
   assert.equal(shown.size, 0);
-});
-
-test("scenes of a server that does not number them are judged by the frames", (context) => {
-  context.mock.timers.enable({ apis: ["setTimeout"] });
-  const { session, tell, drag, radius } = openSession();
-  tell(1);
-  const seq = drag(2);
-  tell(1);
-  assert.equal(radius(), 2);
-  session.setShownSeq(seq);
-  tell(1.9);
-  assert.equal(radius(), 1.9);
 });
 
 test("reads the header of a frame, and nothing from other bytes", () => {
