@@ -133,14 +133,20 @@ class VariedFinder {
     return room;
   }
 
-  // Corners have the smallest radius of their edges.
+  // Corners have the median radius of their edges, the smaller one of two, or what is left of it.
   void find_corners() {
-    corners_.clear();
+    std::vector<std::pair<std::uint32_t, double>> radii;
     for (const Edge& e : edges_) {
-      for (const std::uint32_t v : {e.vertex0, e.vertex1}) {
-        const auto [at, is_new] = corners_.try_emplace(v, e.radius);
-        at->second = std::min(at->second, e.radius);
-      }
+      radii.emplace_back(e.vertex0, e.radius);
+      radii.emplace_back(e.vertex1, e.radius);
+    }
+    std::ranges::sort(radii);
+    corners_.clear();
+    for (std::size_t i = 0, end = 0; i < radii.size(); i = end) {
+      while (end < radii.size() && radii[end].first == radii[i].first) ++end;
+      const auto cap = caps_.find(radii[i].first);
+      const double median = radii[i + (end - i - 1) / 2].second;
+      corners_[radii[i].first] = cap == caps_.end() ? median : std::min(median, cap->second);
     }
   }
 
@@ -149,9 +155,9 @@ class VariedFinder {
       find_corners();
       bool changed = false;
       for (Edge& e : edges_) {
-        const double before = e.radius;
-        if (!fits(e)) lower(e);
-        changed = changed || e.radius != before;
+        if (fits(e)) continue;
+        lower(e);
+        changed = true;
       }
       if (!changed) return;
     }
@@ -180,27 +186,32 @@ class VariedFinder {
 
   // Whether the edge's radius and its transitions have room; an edge of one radius that has none is missing.
   [[nodiscard]] bool fits(Edge& e) {
-    if (e.radius == 0) return true;
     if (is_even(e)) {
+      if (e.radius == 0) return true;
       e.is_missing = std::ranges::binary_search(class_of(e.radius).missing, e.faces);
       return !(e.is_missing && clamp_);
     }
     const std::optional<Ends> ends = ends_of(e);
     if (!ends) return false;
-    const double low = ends->until0 + kTransition * (e.radius - ends->radius0);
-    const double high = e.length - ends->until1 - kTransition * (e.radius - ends->radius1);
+    const double low = ends->until0 + kTransition * std::abs(e.radius - ends->radius0);
+    const double high = e.length - ends->until1 - kTransition * std::abs(e.radius - ends->radius1);
     if (low > high) return false;
     const double slack = kSameRadius * e.length;
     const auto covers = [&](const Interval& i) {
       return i.low <= low + slack && i.high >= high - slack;
     };
-    if (std::ranges::none_of(room(e, e.radius), covers)) return false;
+    if (e.radius > 0 && std::ranges::none_of(room(e, e.radius), covers)) return false;
     return are_free(e, profile_of(e, *ends));
   }
 
-  void lower(Edge& e) const {
+  // The edge's radius, or that of a corner that is larger.
+  void lower(Edge& e) {
     const auto [low, high] = std::minmax({corners_.at(e.vertex0), corners_.at(e.vertex1)});
-    if (e.radius > high) {
+    if (e.radius < high) {
+      for (const std::uint32_t v : {e.vertex0, e.vertex1}) {
+        if (corners_.at(v) > e.radius) caps_[v] = e.radius;
+      }
+    } else if (e.radius > high) {
       e.radius = high;
     } else if (e.radius > low) {
       e.radius = low;
@@ -228,7 +239,7 @@ class VariedFinder {
     };
     add(0, ends.radius0);
     add_step(ends.until0, ends.radius0, e.radius);
-    add_step(e.length - ends.until1 - kTransition * (e.radius - ends.radius1), e.radius,
+    add_step(e.length - ends.until1 - kTransition * std::abs(e.radius - ends.radius1), e.radius,
              ends.radius1);
     add(e.length, ends.radius1);
     return profile;
@@ -253,7 +264,7 @@ class VariedFinder {
   void make_field() {
     find_corners();
     for (Edge& e : edges_) {
-      const std::optional<Ends> ends = is_even(e) || e.radius == 0 ? std::nullopt : ends_of(e);
+      const std::optional<Ends> ends = is_even(e) ? std::nullopt : ends_of(e);
       profiles_.push_back(
           ends ? profile_of(e, *ends)
                : EdgeProfile{e.p0, e.direction, e.length, {{0, e.radius}, {e.length, e.radius}}});
@@ -333,7 +344,7 @@ class VariedFinder {
   bool clamp_;
   std::span<const double> radii_;
   std::vector<Edge> edges_;
-  std::unordered_map<std::uint32_t, double> corners_;                      // by vertex
+  std::unordered_map<std::uint32_t, double> corners_, caps_;               // by vertex
   std::map<double, FoundCreases> classes_;                                 // by radius
   std::map<double, std::vector<std::pair<FacePair, CreaseCurve>>> lines_;  // of these; sorted
   std::vector<EdgeProfile> profiles_;

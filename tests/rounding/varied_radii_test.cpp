@@ -61,27 +61,28 @@ RoundedBox make_box(Vec3d half, Random& rng, const std::vector<double>& radii) {
   return box;
 }
 
-// The definition, by itself: at both ends the smallest radius of the corner for 1.25 of it, then a smooth step to the
-// edge's own of twice the length by which it grows, cut into 16.
+// The definition, by itself: at both ends the median radius of the corner for 1.25 of it, then a smooth step to the
+// edge's own of twice the length by which it changes, cut into 16.
 double radius_along(const RoundedBox& box, const BoxEdge& edge, double v) {
   const double extent = length(edge.p1 - edge.p0);
   const auto corner_radius = [&](Vec3d p) {
-    double least = INFINITY;
+    std::vector<double> radii;
     for (const BoxEdge& e : box.edges) {
-      if (length(e.p0 - p) < 1e-9 || length(e.p1 - p) < 1e-9) least = std::min(least, e.radius);
+      if (length(e.p0 - p) < 1e-9 || length(e.p1 - p) < 1e-9) radii.push_back(e.radius);
     }
-    return least;
+    std::ranges::sort(radii);
+    return radii[1];
   };
   const bool is_near_p1 = v > 0.5 * extent;
   const double from_end = is_near_p1 ? extent - v : v;
-  const double least = corner_radius(is_near_p1 ? edge.p1 : edge.p0);
-  const double grown = edge.radius - least;
-  const double at = grown > 0 ? (from_end - 1.25 * least) / (2 * grown) : 1;
+  const double corner = corner_radius(is_near_p1 ? edge.p1 : edge.p0);
+  const double grown = edge.radius - corner;
+  const double at = grown != 0 ? (from_end - 1.25 * corner) / (2 * std::abs(grown)) : 1;
   const double step = std::clamp(at, 0.0, 1.0) * 16;
   const auto smooth = [](double x) { return x * x * (3 - 2 * x); };
   const double low = std::floor(std::min(step, 15.999999));
   const double part = smooth(low / 16) + (smooth((low + 1) / 16) - smooth(low / 16)) * (step - low);
-  return least + grown * part;
+  return corner + grown * part;
 }
 
 struct Ball {
@@ -224,7 +225,7 @@ TEST(VariedRadii, rays_pass_through_no_material) {
   EXPECT_GT(rounded, 1000);
 }
 
-TEST(VariedRadii, edges_without_radius_stay_sharp_and_others_run_out_at_them) {
+TEST(VariedRadii, edges_without_radius_stay_sharp_between_their_corners) {
   Random rng(5);
   RoundedBox box = make_box({1, 1, 1}, rng, {0.2});
   box.options.rules[0].radius = 0;
@@ -235,11 +236,12 @@ TEST(VariedRadii, edges_without_radius_stay_sharp_and_others_run_out_at_them) {
   const auto hit = trace({middle - d * 5.0, d}, {box.mesh.view(), &rounding});
   ASSERT_TRUE(hit);
   EXPECT_NEAR(hit->t, 5, 1e-6);
-  // At the corner, too.
+  // The corner is that of the other two edges.
   const Vec3d to_corner = normalize(sharp.p0) * -1.0;
   const auto corner = trace({sharp.p0 - to_corner * 5.0, to_corner}, {box.mesh.view(), &rounding});
   ASSERT_TRUE(corner);
-  EXPECT_NEAR(corner->t, 5, 1e-4);
+  EXPECT_NEAR(corner->t, 5 + 0.2 * (std::sqrt(3.0) - 1), 1e-5);
+  EXPECT_EQ(corner->feature, Feature::corner);
 }
 
 TEST(VariedRadii, edges_that_are_too_short_take_the_smaller_radius_and_are_told) {
