@@ -153,13 +153,12 @@ class CreasedEdge {
   }
 
   [[nodiscard]] bool is_one() const { return solid_ != nullptr; }
-  [[nodiscard]] bool is_rounded() const {
-    return convex_ && !solid_->is_left_sharp(face0_, face1_, (kept_.p0 + kept_.p1) * 0.5);
-  }
   [[nodiscard]] bool is_convex() const { return convex_; }
   // In the mesh's space; nothing: all of it is.
   [[nodiscard]] std::optional<std::vector<EdgeEnds>> find_kept() const {
-    const std::vector<std::pair<double, double>> parts = find_kept_parts(*solid_, kept_);
+    const std::vector<std::pair<double, double>> parts =
+        convex_ ? solid_->find_sharp_parts(face0_, face1_, kept_.p0, kept_.p1)
+                : find_kept_parts(*solid_, kept_);
     if (parts.size() == 1 && parts[0] == std::pair(0.0, 1.0)) return std::nullopt;
     const Vec3d p(mesh_.vertices[edge_.v0]), q(mesh_.vertices[edge_.v1]);
     std::vector<EdgeEnds> ends;
@@ -340,11 +339,10 @@ void EdgeObjects::find_rounded(const PreparedScene& prepared, ObjectEdges& objec
       continue;
     }
     if (const CreasedEdge creased(data, rounding_from_object, mesh, edge); creased.is_one()) {
-      if (creased.is_rounded()) {
+      std::optional<std::vector<EdgeEnds>> parts = creased.find_kept();
+      if (creased.is_convex() && parts && parts->empty()) {
         out[e] = if_rounded;
-      } else if (creased.is_convex()) {
-        continue;
-      } else if (std::optional<std::vector<EdgeEnds>> parts = creased.find_kept()) {
+      } else if (parts) {
         out[e] = RoundedEdge::partly;
         object.kept.emplace(e, std::move(*parts));
       }

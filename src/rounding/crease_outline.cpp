@@ -46,6 +46,10 @@ class OutlineFinder {
         pipe.curve.is_line ? add_line(pipe, touch) : add_arc(pipe, touch);
       }
     }
+    for (const CreaseJoint& joint : solid_.shape().joints) {
+      axis_ = normalize(solid_.shape().pipes[joint.pipes[0]].curve.a);
+      for (const double side : {-1.0, 1.0}) add_joint(joint, side);
+    }
     axis_ = {};
     for (const CreaseBall& ball : solid_.shape().balls) add_ball(ball);
     return std::move(out_);
@@ -179,6 +183,30 @@ class OutlineFinder {
     });
     std::ranges::sort(cuts);
     return cuts;
+  }
+
+  // On the ball between two cones, from the end of one's line to that of the other's.
+  void add_joint(const CreaseJoint& joint, double side) {
+    const auto touch_end = [&](std::size_t i, double its_side) {
+      const CreasePipe& pipe = solid_.shape().pipes[joint.pipes[i]];
+      return touch_pipe(pipe, joint.is_last[i] ? pipe.curve.u1 : pipe.curve.u0, its_side);
+    };
+    const Touch from = touch_end(0, side);
+    Touch to = touch_end(1, side);
+    const Touch other = touch_end(1, -side);
+    if (other.exists && dot(other.n, from.n) > dot(to.n, from.n)) to = other;
+    if (!from.is_on() || !to.is_on()) return;
+    const Vec3d z = normalize(eye_ - from.c);
+    const double cosine = from.r / length(eye_ - from.c), sine = std::sqrt(1 - cosine * cosine);
+    const auto round = [&](double part) {
+      const Vec3d n = from.n + (to.n - from.n) * part;
+      Touch t = from;
+      t.u = part;
+      t.n = z * cosine + normalize(n - z * dot(n, z)) * sine;
+      return t;
+    };
+    const double turn = std::acos(std::clamp(dot(from.n, to.n), -1.0, 1.0));
+    follow(0, 1, std::max(1, int(std::ceil(turn / kArcStep))), round);
   }
 
   template <class TouchAt>

@@ -163,6 +163,34 @@ std::vector<CreaseBall> make_balls(std::span<CreasePipe> pipes, double radius,
   return balls;
 }
 
+std::vector<CreaseJoint> find_joints(std::span<const CreasePipe> pipes, double radius) {
+  struct End {
+    Vec3d point;
+    std::uint32_t pipe;
+    bool is_last;
+  };
+  std::vector<End> ends;
+  for (std::uint32_t i = 0; i < pipes.size(); ++i) {
+    const CreaseCurve& c = pipes[i].curve;
+    if (!c.is_line || c.face_b == kNone) continue;
+    ends.push_back({c.at(c.u0), i, false});
+    ends.push_back({c.at(c.u1), i, true});
+  }
+  std::ranges::sort(ends, {}, [](const End& e) { return e.point.x; });
+  const double same = kSameEnd * radius;
+  std::vector<CreaseJoint> joints;
+  for (std::size_t i = 0; i < ends.size(); ++i) {
+    for (std::size_t j = i + 1; j < ends.size() && ends[j].point.x - ends[i].point.x < same; ++j) {
+      const CreaseCurve &c = pipes[ends[i].pipe].curve, &d = pipes[ends[j].pipe].curve;
+      if (c.growth() == 0 && d.growth() == 0) continue;
+      const bool is_one_edge = c.face_a == d.face_a && c.face_b == d.face_b;
+      if (!is_one_edge || length(ends[i].point - ends[j].point) >= same) continue;
+      joints.push_back({{ends[i].pipe, ends[j].pipe}, {ends[i].is_last, ends[j].is_last}});
+    }
+  }
+  return joints;
+}
+
 // Pieces into which the finder has cut one curve follow each other.
 std::vector<CreaseCurve> join_pieces(std::span<const CreaseCurve> creases) {
   std::vector<CreaseCurve> out;
@@ -236,6 +264,7 @@ CreaseShape make_crease_shape(const SolidSurface& surface, std::span<const Creas
         CreasePipe pipe = make_pipe(curves[i], finder);
         if (!pipe.wedges.empty()) list.push_back(std::move(pipe));
       });
+  shape.joints = find_joints(shape.pipes, radius);
   shape.balls = make_balls(shape.pipes, radius, finder);
   return shape;
 }

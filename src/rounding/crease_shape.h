@@ -50,8 +50,15 @@ struct CreaseGroove {
   Vec3d normal0, normal1;  // of the two sides
 };
 
+// Where pipes along one edge meet whose balls grow differently.
+struct CreaseJoint {
+  std::array<std::uint32_t, 2> pipes;
+  std::array<bool, 2> is_last;  // ends
+};
+
 struct CreaseShape {
   std::vector<CreasePipe> pipes;
+  std::vector<CreaseJoint> joints;
   std::vector<CreaseBall> balls;
   std::vector<CreaseGroove> grooves;
 };

@@ -30,6 +30,8 @@ constexpr double kOnSurface = 1e-4;
 // Of a way that should lie in a void: how many radii beneath the surface it may not be, and where it is looked at.
 constexpr double kInMaterial = 0.02;
 constexpr std::array kPlacesOnWay{0.08, 0.25, 0.42, 0.58, 0.75, 0.92};
+// Places of an edge where it is seen whether it has a radius.
+constexpr int kEdgeSteps = 64;
 // More functions than these cost more than asking the surface.
 constexpr std::size_t kMostDepths = 8;
 
@@ -123,6 +125,30 @@ const CreaseShape& CreasedSolid::shape() const {
     });
   });
   return shape_->shape;
+}
+
+std::vector<std::pair<double, double>> CreasedSolid::find_sharp_parts(std::uint32_t face,
+                                                                      std::uint32_t other, Vec3d p0,
+                                                                      Vec3d p1) const {
+  if (surface.is_thin(face, other)) return {{0, 1}};
+  std::vector<std::pair<double, double>> parts;
+  if (field.is_uniform()) return parts;
+  const auto is_sharp = [&](double u) { return field.at(p0 + (p1 - p0) * u) <= tolerance; };
+  bool was = is_sharp(0);
+  double from = 0;
+  for (int i = 1; i <= kEdgeSteps; ++i) {
+    double low = double(i - 1) / kEdgeSteps, high = double(i) / kEdgeSteps;
+    const bool now = is_sharp(high);
+    for (int k = 0; now != was && k < 30; ++k) {
+      const double middle = 0.5 * (low + high);
+      (is_sharp(middle) == was ? low : high) = middle;
+    }
+    if (was && !now) parts.emplace_back(from, low);
+    if (!was && now) from = high;
+    was = now;
+  }
+  if (was) parts.emplace_back(from, 1.0);
+  return parts;
 }
 
 double CreasedSolid::beneath() const {

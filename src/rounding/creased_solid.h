@@ -11,6 +11,7 @@
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "arris/rounding.h"
@@ -44,10 +45,10 @@ struct CreasedSolid {
   [[nodiscard]] bool is_kept(Vec3d x, Vec3d normal, std::uint32_t region) const;
   // From a point of the void, or of the sharp surface above it, on along a ray within the sharp solid.
   [[nodiscard]] VoidCrossing cross_void(Vec3d x, Vec3d direction) const;
-  // Whether the convex edge of two faces is, with its middle.
-  [[nodiscard]] bool is_left_sharp(std::uint32_t face, std::uint32_t other, Vec3d middle) const {
-    return surface.is_thin(face, other) || field.at(middle) <= tolerance;
-  }
+  // The parts of a convex edge of two faces that stay sharp, by fractions of it.
+  [[nodiscard]] std::vector<std::pair<double, double>> find_sharp_parts(std::uint32_t face,
+                                                                        std::uint32_t other,
+                                                                        Vec3d p0, Vec3d p1) const;
   // How deep in balls a point is beneath the rounded surface.
   [[nodiscard]] double beneath() const;
   // Whether a point of the solid lies beneath the rounded surface, by more than what rays are computed to, or by so many

@@ -33,6 +33,7 @@ struct MadeExact {
   std::vector<TriangleBand> bands;
   std::vector<VariedCreases::Edge> clamped;
   std::uint64_t filled_edges = 0;  // concave ones with fillets
+  std::uint64_t thin_walls = 0;    // pairs of faces
 };
 
 MadeExact make_exact_solids(const ExactInput& input, Rounding::Data& data);

@@ -72,6 +72,7 @@ class CreasedMaker {
     if (in_.is_outside && !found.missing.empty()) return std::nullopt;
     std::vector<FacePair> thin;
     if (!in_.is_outside) thin = find_thin_walls({surface, {}, sharp, in_.regions, r_});
+    const std::uint64_t thin_walls = thin.size() / 2;
     // Edges that stay sharp end thin walls, too.
     for (const auto& [a, b] : found.missing) thin.insert(thin.end(), {{a, b}, {b, a}});
     surface.set_thin(thin);
@@ -90,7 +91,7 @@ class CreasedMaker {
     std::vector<PlainCrease> plain = find_plain_creases(solid, in_.regions.planes);
     for (const std::uint32_t h : edges_between(found.missing)) found.smaller.push_back({h, 0});
     return MadeCreased{std::move(solid), std::move(bands), std::move(found.smaller),
-                       std::move(plain)};
+                       std::move(plain), thin_walls};
   }
 
  private:

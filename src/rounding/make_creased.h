@@ -36,6 +36,7 @@ struct MadeCreased {
   // Half-edges, one of each pair, whose edges have a smaller radius than they should, or stay sharp: there is no room.
   std::vector<VariedCreases::Edge> clamped;
   std::vector<PlainCrease> plain;
+  std::uint64_t thin_walls = 0;  // pairs of faces
 };
 
 // shells: the outside of one solid, then its hollows. Nothing: something about them is open, no edge has room, or facets

@@ -224,6 +224,7 @@ class RoundingMaker {
                           *data_);
     bands_ = std::move(made.bands);
     filled_edges_ = made.filled_edges;
+    thin_walls_ = made.thin_walls;
     for (const VariedCreases::Edge& e : made.clamped) {
       add_clamped(e.half_edge, e.radius);
       ++(e.radius > 0 ? clamped_ : left_in_creased_);
@@ -452,6 +453,8 @@ class RoundingMaker {
     note(narrow_ + left_in_creased_,
          "edge stays sharp: the radius is too large for the faces beside it",
          "edges stay sharp: the radius is too large for the faces beside them");
+    note(thin_walls_, "wall is thinner than twice the radius: its faces stay",
+         "walls are thinner than twice the radius: their faces stay");
     note(clamped_, "edge has a smaller radius: its own is too large for what lies beside it",
          "edges have a smaller radius: their own is too large for what lies beside them");
     note(sharp_by_rule_, "edge stays sharp: its radius is 0",
@@ -496,7 +499,7 @@ class RoundingMaker {
   std::vector<ShellNetwork> networks_;
   std::uint64_t cavities_ = 0, shortened_ = 0, narrow_ = 0, too_small_ = 0, unasked_ = 0;
   std::uint64_t filled_edges_ = 0, left_in_creased_ = 0;
-  std::uint64_t clamped_ = 0, sharp_by_rule_ = 0, rules_ignored_ = 0;
+  std::uint64_t thin_walls_ = 0, clamped_ = 0, sharp_by_rule_ = 0, rules_ignored_ = 0;
 };
 
 }  // namespace

@@ -215,7 +215,12 @@ void expect_edges_at_jumps(const RulesOf& rules_of) {
         ++of_case_missed;
         if (of_case_missed < 6) {
           const auto seen = picture.look(jump.x, jump.y);
-          const Vec3d p = seen.hit ? Vec3d(seen.hit->position) : Vec3d();
+          auto near = seen;
+          for (const double off : {0.02, -0.02}) {
+            if (!near.hit) near = picture.look(jump.x + off, jump.y + off);
+            if (!near.hit) near = picture.look(jump.x + off, jump.y - off);
+          }
+          const Vec3d p = near.hit ? Vec3d(near.hit->position) : Vec3d();
           examples += fmt::format(
               "{} view {}: at {:.1f} {:.1f} ({:.4f}, {:.4f}, {:.4f}) turn {:.0f} gap {:.2g} r, "
               "edge "
