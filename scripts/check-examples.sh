@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # check-examples.sh — the examples do what they say: the models are what their script writes, each model
 # and scene renders, in beams, too, and the host renderer, built on the installed package in build/check/prefix, keeps
-# every path out of its solids and writes a picture.
+# every path out of its solids and fillets, and writes pictures.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
@@ -37,8 +37,13 @@ done
 cmake -S examples/host_renderer -B build/check/host_renderer -G Ninja -DCMAKE_BUILD_TYPE=Release \
   -DCMAKE_PREFIX_PATH="$PWD/build/check/prefix"
 cmake --build build/check/host_renderer
-for radius in 0.001 0.08 0.2; do
-  build/check/host_renderer/host_renderer --furnace "$radius"
+for edges in convex concave both; do
+  for radius in 0.001 0.08 0.2; do
+    build/check/host_renderer/host_renderer --furnace "$radius" --edges "$edges"
+  done
+  build/check/host_renderer/host_renderer "$out/host-$edges.ppm" 0.08 320 4 --edges "$edges"
+  [ "$(stat --format=%s "$out/host-$edges.ppm")" -eq $((320 * 180 * 3 + 15)) ]
 done
-build/check/host_renderer/host_renderer "$out/host.ppm" 0.08 320 4
-[ "$(stat --format=%s "$out/host.ppm")" -eq $((320 * 180 * 3 + 15)) ]
+# Fillets are seen, and change little else: each pixel has random numbers of its own.
+changed=$(cmp -l "$out/host-convex.ppm" "$out/host-both.ppm" | wc -l) || true
+[ "$changed" -gt 1000 ] && [ "$changed" -lt $((320 * 180 * 3 / 10)) ]

@@ -1,9 +1,9 @@
 // host_renderer — a small path tracer over Embree that hosts Arris's rounding
-// What       makes a few convex solids, rounds them, and renders them under a sky. It knows nothing of
-//            Arris but arris/rounding.h and arris/math.h; what a host has to do is in World::trace().
-// Usage      host_renderer PICTURE.ppm [RADIUS [WIDTH [SAMPLES]]]
-//            host_renderer --furnace [RADIUS]: all solids white under a white sky. Every path must find
-//            its way out; exits 1 if the rounding lets one into a solid.
+// What       makes a few solids, rounds them, and renders them under a sky. It knows nothing of Arris but
+//            arris/rounding.h and arris/math.h; what a host has to do is in World::trace().
+// Usage      host_renderer PICTURE.ppm [RADIUS [WIDTH [SAMPLES]]] [--edges convex|concave|both]
+//            host_renderer --furnace [RADIUS] [--edges …]: all solids white under a white sky. Every path
+//            must find its way out; exits 1 if the rounding lets one into a solid.
 #include <embree3/rtcore.h>
 
 #include <algorithm>
@@ -25,9 +25,14 @@
 
 namespace {
 
+using arris::Feature;
+using arris::RayStart;
+using arris::Resolution;
+using arris::RoundEdges;
 using arris::Triangle;
 using arris::Vec3d;
 using arris::Vec3f;
+using Outcome = arris::Resolution::Outcome;
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
@@ -38,46 +43,70 @@ struct Mesh {
   std::vector<Triangle> triangles;
 };
 
-// A prism over a regular polygon, standing on z = place.z and narrowed by `taper` at its top.
-struct PrismShape {
-  int sides = 4;
-  Vec3d place;
-  double radius = 1;  // of the polygon's corners
-  double height = 1;
-  double turn = 0;
-  double taper = 1;
-};
+using Ring = std::vector<Vec3d>;  // counter-clockwise from above
 
-Mesh make_prism(const PrismShape& shape) {
+// The solid whose walls join each ring with the next one above it, or within it at the same height. The first and the
+// last must be seen as a whole from their first corner.
+Mesh make_solid(const std::vector<Ring>& rings) {
   Mesh mesh;
-  const auto n = std::uint32_t(shape.sides);
-  for (const double level : {0.0, 1.0}) {
-    const double radius = shape.radius * (level > 0 ? shape.taper : 1);
-    for (std::uint32_t i = 0; i < n; ++i) {
-      const double angle = shape.turn + 2 * arris::kPi * i / n;
-      mesh.positions.emplace_back(shape.place + Vec3d(radius * std::cos(angle),
-                                                      radius * std::sin(angle),
-                                                      level * shape.height));
+  const auto n = std::uint32_t(rings[0].size());
+  for (const Ring& ring : rings) {
+    for (const Vec3d& corner : ring) {
+      mesh.positions.emplace_back(corner);
     }
   }
-  for (std::uint32_t i = 0; i < n; ++i) {
-    const std::uint32_t next = (i + 1) % n;
-    mesh.triangles.push_back({i, next, n + next});
-    mesh.triangles.push_back({i, n + next, n + i});
+  const auto top = std::uint32_t(n * (rings.size() - 1));
+  for (std::uint32_t ring = 0; ring < top; ring += n) {
+    for (std::uint32_t i = 0; i < n; ++i) {
+      const std::uint32_t a = ring + i, b = ring + (i + 1) % n;
+      mesh.triangles.push_back({a, b, n + b});
+      mesh.triangles.push_back({a, n + b, n + a});
+    }
   }
   for (std::uint32_t i = 1; i + 1 < n; ++i) {
     mesh.triangles.push_back({0, i + 1, i});
-    mesh.triangles.push_back({n, n + i, n + i + 1});
+    mesh.triangles.push_back({top, top + i, top + i + 1});
   }
   return mesh;
 }
 
+Ring make_polygon(int sides, Vec3d center, double radius, double turn = 0) {
+  Ring ring;
+  for (int i = 0; i < sides; ++i) {
+    const double angle = turn + 2 * arris::kPi * i / sides;
+    ring.push_back(center + Vec3d(radius * std::cos(angle), radius * std::sin(angle), 0));
+  }
+  return ring;
+}
+
+Ring make_square(Vec3d center, double edge) {
+  return make_polygon(4, center, edge / std::sqrt(2), arris::kPi / 4);
+}
+
 Mesh make_cube(Vec3d place, double edge) {
-  return make_prism({.sides = 4,
-                     .place = place,
-                     .radius = edge / std::sqrt(2),
-                     .height = edge,
-                     .turn = arris::kPi / 4});
+  return make_solid({make_square(place, edge), make_square(place + Vec3d(0, 0, edge), edge)});
+}
+
+// Two walls that meet at a right angle; their inner, concave edge ends at the rim of the faces above and below.
+Mesh make_bracket(Vec3d place, double leg, double thickness, double height) {
+  const double t = thickness;
+  std::vector<Ring> rings;
+  for (const double z : {0.0, height}) {
+    Ring ring{{t, t, z}, {t, leg, z}, {0, leg, z}, {0, 0, z}, {leg, 0, z}, {leg, t, z}};
+    for (Vec3d& corner : ring) {
+      corner = place + Vec3d(-corner.y, -corner.x, corner.z);  // opens towards the camera
+    }
+    std::reverse(ring.begin() + 1, ring.end());
+    rings.push_back(ring);
+  }
+  return make_solid(rings);
+}
+
+// A plate with a block on it: around its foot runs a concave edge.
+Mesh make_boss(Vec3d place) {
+  const Vec3d foot = place + Vec3d(0, 0, 0.25);
+  return make_solid({make_square(place, 1.1), make_square(foot, 1.1), make_square(foot, 0.5),
+                     make_square(foot + Vec3d(0, 0, 0.4), 0.5)});
 }
 
 // ---- World: Embree's scene, and the rounding beside it -------------------------------------------
@@ -98,13 +127,16 @@ class World {
  public:
   explicit World(std::vector<Object> objects);
 
-  // The nearest point of the rounded solids along the ray. A ray that leaves a convex solid never
-  // meets it again: `leaving` is that object.
+  // The nearest point of the rounded solids along a ray that starts outside of them all; `leaving` is
+  // the object on whose surface it starts.
   std::optional<SurfacePoint> trace(const arris::Ray& ray, std::optional<unsigned> leaving) const;
 
   const Object& object(unsigned id) const { return objects_[id]; }
 
  private:
+  std::optional<SurfacePoint> trace_meshes(const arris::Ray& ray,
+                                           std::optional<unsigned> leaving) const;
+
   struct DeviceDeleter {
     void operator()(RTCDevice device) const { rtcReleaseDevice(device); }
   };
@@ -136,17 +168,27 @@ World::World(std::vector<Object> objects) : objects_(std::move(objects)) {
   rtcCommitScene(scene_.get());
 }
 
-// An Embree query that does not see the objects it is told to ignore.
+constexpr unsigned kWhole = ~0U;
+
+// What a query is not to see: a triangle of an object, or the object as a whole.
+struct Ignored {
+  unsigned object;
+  unsigned triangle = kWhole;
+};
+
 struct FilteredQuery {
   RTCIntersectContext context;  // first: Embree hands back a pointer to it
-  std::vector<unsigned> ignored;
+  std::vector<Ignored> ignored;
 };
 
 void reject_ignored(const RTCFilterFunctionNArguments* arguments) {
   const auto* query = reinterpret_cast<const FilteredQuery*>(arguments->context);
   const unsigned object = RTCHitN_geomID(arguments->hit, arguments->N, 0);
-  if (std::find(query->ignored.begin(), query->ignored.end(), object) != query->ignored.end()) {
-    arguments->valid[0] = 0;
+  const unsigned triangle = RTCHitN_primID(arguments->hit, arguments->N, 0);
+  for (const Ignored& each : query->ignored) {
+    if (each.object == object && (each.triangle == kWhole || each.triangle == triangle)) {
+      arguments->valid[0] = 0;
+    }
   }
 }
 
@@ -164,15 +206,23 @@ RTCRayHit make_query(const arris::Ray& ray, double t_far) {
   return query;
 }
 
-std::optional<SurfacePoint> World::trace(const arris::Ray& ray,
-                                         std::optional<unsigned> leaving) const {
+// All rays of this host start outside. Of the solid that a ray leaves the kernel has to know it: the ray may start in
+// the void between the sharp and the rounded edge, or on a fillet, and rounding errors may put it on either side.
+RayStart start_of(unsigned object, std::optional<unsigned> leaving) {
+  return object == leaving ? RayStart::outside : RayStart::unknown;
+}
+
+std::optional<SurfacePoint> World::trace_meshes(const arris::Ray& ray,
+                                                std::optional<unsigned> leaving) const {
   FilteredQuery filter;
   rtcInitIntersectContext(&filter.context);
   filter.context.filter = reject_ignored;
-  if (leaving) {
-    filter.ignored.push_back(*leaving);
+  // A ray that leaves a convex solid never meets it again.
+  if (leaving && objects_[*leaving].rounding->is_exact(0)) {
+    filter.ignored.push_back({*leaving});
   }
   std::optional<SurfacePoint> nearest;
+  std::optional<SurfacePoint> entry;  // where the ray has passed into a solid
   for (;;) {
     RTCRayHit query = make_query(ray, nearest ? nearest->t : kInfinity);
     rtcIntersect1(scene_.get(), &filter.context, &query);
@@ -182,27 +232,77 @@ std::optional<SurfacePoint> World::trace(const arris::Ray& ray,
     const unsigned id = query.hit.geomID;
     const arris::Rounding& rounding = *objects_[id].rounding;
     const arris::MeshHit hit{query.hit.primID, query.hit.u, query.hit.v, query.ray.tfar};
-    const Vec3d face_normal = rounding.face_normal(hit.triangle);
-    const bool entering = arris::dot(face_normal, ray.direction) < 0;
+    const SurfacePoint sharp{hit.t, rounding.face_normal(hit.triangle), id};
+    const bool entering = arris::dot(sharp.normal, ray.direction) < 0;
     // 1. The hit is on the rounded solid: nothing else to do, as for most rays. (A ray that is met from
     //    inside may have started between the sharp and the rounded edge, so it is always resolved.)
     if (entering && rounding.is_kept(hit.triangle, hit.u, hit.v)) {
-      return SurfacePoint{hit.t, face_normal, id};
+      return sharp;
     }
-    const arris::Resolution resolution = rounding.resolve(ray, hit);
-    if (resolution.outcome == arris::Resolution::Outcome::kept) {
-      return SurfacePoint{hit.t, face_normal, id};
+    const Resolution resolution = rounding.resolve(ray, hit, start_of(id, leaving));
+    const bool moves = resolution.outcome == Outcome::moved;
+    const SurfacePoint surface =
+        moves ? SurfacePoint{resolution.hit.t, resolution.hit.normal, id} : sharp;
+    // 2. Where rounding has no surface though the ray has crossed material, the sharp face stands instead of a hole.
+    const bool passes = resolution.outcome == Outcome::passed;
+    if (!entering && !passes && entry && entry->object == id) {
+      return entry;
     }
-    // 2. The surface is further in, on an edge's cylinder or a corner's sphere: another solid that
-    //    reaches in there may still be nearer.
-    if (resolution.outcome == arris::Resolution::Outcome::moved &&
-        (!nearest || resolution.hit.t < nearest->t)) {
-      nearest = SurfacePoint{resolution.hit.t, resolution.hit.normal, id};
+    // 3. The hit stands after all; or the surface is on a fillet before the hit, or further in, on an edge's cylinder or a
+    //    corner's sphere: another solid that reaches in there may still be nearer. The search starts again from the
+    //    origin, so a neighbour that touches the solid is met at its surface. A surface that the ray leaves is the one
+    //    where it starts, on the wrong side by rounding errors, as all rays come from outside.
+    const bool leaves = arris::dot(surface.normal, ray.direction) > 0;
+    if (!passes && !leaves) {
+      if (!moves) {
+        return sharp;
+      }
+      if (!nearest || surface.t < nearest->t) {
+        nearest = surface;
+      }
+      filter.ignored.push_back({id});
+      continue;
     }
-    // 3. Whether it has missed the solid or met it, the ray has nothing more to find there. The search
-    //    starts again from the origin, so a neighbour that touches the solid is met at its surface.
-    filter.ignored.push_back(id);
+    // 4. The ray misses the solid here. Of a convex one it has nothing more to find; one with concave edges it may meet
+    //    again. A border between solid and fillet is crossed within material, and tells nothing of holes.
+    const bool is_exact = rounding.is_exact(rounding.solid_of(hit.triangle));
+    filter.ignored.push_back({id, is_exact ? kWhole : hit.triangle});
+    if (entering && !is_exact && resolution.hit.feature != Feature::fillet) {
+      entry = sharp;
+    }
   }
+}
+
+bool meets_box(const arris::Ray& ray, const arris::Rounding::FilletBox& box, double t_max) {
+  double near = 0, far = t_max;
+  for (int axis = 0; axis < 3; ++axis) {
+    const double a = (box.low[axis] - ray.origin[axis]) / ray.direction[axis];
+    const double b = (box.high[axis] - ray.origin[axis]) / ray.direction[axis];
+    near = std::max(near, std::min(a, b));
+    far = std::min(far, std::max(a, b));
+  }
+  return near <= far;
+}
+
+std::optional<SurfacePoint> World::trace(const arris::Ray& ray,
+                                         std::optional<unsigned> leaving) const {
+  std::optional<SurfacePoint> nearest = trace_meshes(ray, leaving);
+  // Where a fillet runs out at the rim of a face, a ray may meet it and miss the mesh. There are few boxes here; a host
+  // of many has them in its tree, as user geometry.
+  for (unsigned id = 0; id < objects_.size(); ++id) {
+    const auto boxes = objects_[id].rounding->fillet_boxes();
+    for (std::uint32_t box = 0; box < boxes.size(); ++box) {
+      const double end = nearest ? nearest->t : kInfinity;
+      if (!meets_box(ray, boxes[box], end)) {
+        continue;
+      }
+      const auto met = objects_[id].rounding->meet_fillet(box, ray, 0, end, start_of(id, leaving));
+      if (met) {
+        nearest = SurfacePoint{met->t, met->normal, id};
+      }
+    }
+  }
+  return nearest;
 }
 
 // ---- Light --------------------------------------------------------------------------------------
@@ -349,32 +449,41 @@ void save_ppm(const Film& film, const PictureSettings& settings, const std::stri
   }
 }
 
-// A floor, two cubes side by side with a third on top, a hexagonal plate and a pyramid's stump, apart
-// by `gap`: at 0 they touch, and the two cubes share a face.
-std::vector<Object> make_objects(double radius, double gap) {
+struct Rounded {
+  double radius = 0.08;
+  RoundEdges edges = RoundEdges::convex;
+};
+
+// A floor, two cubes side by side with a third on top, a hexagonal plate and a pyramid's stump, a bracket and a plate
+// with a boss, apart by `gap`: at 0 they touch, and the two cubes share a face.
+std::vector<Object> make_objects(const Rounded& rounded, double gap) {
   std::vector<Object> objects;
   const auto add = [&](Mesh mesh, Vec3d albedo) {
     Object object{std::move(mesh), albedo, std::nullopt};
-    object.rounding = arris::make_rounding({object.mesh.positions, object.mesh.triangles},
-                                           {.radius = radius}, "solid");
+    object.rounding =
+        arris::make_rounding({object.mesh.positions, object.mesh.triangles},
+                             {.radius = rounded.radius, .edges = rounded.edges}, "solid");
     objects.push_back(std::move(object));
   };
   add(make_cube({0, 0, -8 - gap}, 8), Vec3d(0.5));
   add(make_cube({-0.5, 0, 0}, 1), {0.7, 0.25, 0.15});
   add(make_cube({0.5 + gap, 0, 0}, 1), {0.75, 0.6, 0.2});
   add(make_cube({0, 0, 1 + gap}, 0.7), {0.2, 0.35, 0.6});
-  add(make_prism({.sides = 6, .place = {1.75, -0.35, 0}, .radius = 0.55, .height = 0.5}),
+  add(make_solid(
+          {make_polygon(6, {1.75, -0.35, 0}, 0.55), make_polygon(6, {1.75, -0.35, 0.5}, 0.55)}),
       {0.6, 0.6, 0.62});
-  add(make_prism(
-          {.sides = 5, .place = {-1.8, -0.2, 0}, .radius = 0.65, .height = 1.2, .taper = 0.4}),
+  add(make_solid(
+          {make_polygon(5, {-1.8, -0.2, 0}, 0.65), make_polygon(5, {-1.8, -0.2, 1.2}, 0.26)}),
       {0.25, 0.5, 0.3});
+  add(make_bracket({-0.35, -0.8, 0}, 0.9, 0.25, 0.45), {0.55, 0.45, 0.6});
+  add(make_boss({1.1, -1.55, 0}), {0.6, 0.5, 0.4});
   return objects;
 }
 
-int run_furnace(double radius) {
+int run_furnace(const Rounded& rounded) {
   const PictureSettings settings{320, 180, 8, Light::furnace};
   // Well apart: in a narrow gap a path may rightly take thousands of bounces.
-  const Film film = render(World(make_objects(radius, 0.2)), settings);
+  const Film film = render(World(make_objects(rounded, 0.2)), settings);
   const std::uint64_t paths = film.pixels.size() * std::uint64_t(settings.samples);
   std::printf("furnace: %llu of %llu paths lost\n",
               static_cast<unsigned long long>(film.lost_paths),
@@ -382,23 +491,39 @@ int run_furnace(double radius) {
   return film.lost_paths == 0 ? 0 : 1;
 }
 
-int run(const std::vector<std::string>& arguments) {
+RoundEdges parse_edges(const std::string& word) {
+  if (word == "convex") return RoundEdges::convex;
+  if (word == "concave") return RoundEdges::concave;
+  if (word == "both") return RoundEdges::both;
+  throw std::invalid_argument("--edges: \"" + word + "\" is neither convex, concave nor both");
+}
+
+int run(std::vector<std::string> arguments) {
+  Rounded rounded;
+  const auto option = std::find(arguments.begin(), arguments.end(), "--edges");
+  if (arguments.end() - option >= 2) {
+    rounded.edges = parse_edges(option[1]);
+    arguments.erase(option, option + 2);
+  }
   const auto number = [&](std::size_t at, double otherwise) {
     return at < arguments.size() ? std::stod(arguments[at]) : otherwise;
   };
   if (arguments.empty()) {
-    std::fputs("usage: host_renderer PICTURE.ppm|--furnace [RADIUS [WIDTH [SAMPLES]]]\n", stderr);
+    std::fputs(
+        "usage: host_renderer PICTURE.ppm|--furnace [RADIUS [WIDTH [SAMPLES]]] "
+        "[--edges convex|concave|both]\n",
+        stderr);
     return 2;
   }
-  const double radius = number(1, 0.08);
+  rounded.radius = number(1, rounded.radius);
   if (arguments[0] == "--furnace") {
-    return run_furnace(radius);
+    return run_furnace(rounded);
   }
   PictureSettings settings;
   settings.width_px = int(number(2, 640));
   settings.height_px = settings.width_px * 9 / 16;
   settings.samples = int(number(3, 32));
-  save_ppm(render(World(make_objects(radius, 0)), settings), settings, arguments[0]);
+  save_ppm(render(World(make_objects(rounded, 0)), settings), settings, arguments[0]);
   return 0;
 }
 
