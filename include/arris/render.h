@@ -68,7 +68,7 @@ struct RoundingSummary {
   std::uint32_t object_index = 0;
   double radius = 0;  // world units; 0: not rounded
   std::uint64_t edges = 0, corners = 0;
-  std::vector<RoundingNote> notes;  // docs/rounding.md lists them
+  std::vector<RoundingNote> notes;   // docs/rounding.md lists them
   std::vector<ClampedEdge> clamped;  // in world space
 };
 

@@ -1,7 +1,7 @@
 // edge_radii.h — rounding radii of single edges, collected while a mesh is read
 // What       radii that a file gives edges, and those of sides of faces between vertices that it gives a value
-// Guarantee  take() names each pair of vertices once, in ascending order; what is said of an edge itself goes before what
-//            its vertices have, a later radius before an earlier one
+// Guarantee  take() names each pair of vertices once, in ascending order; what is said of an edge itself goes before
+//            what its vertices have, a later radius before an earlier one
 // Cost       n log n in the edges and sides added
 #pragma once
 

@@ -47,8 +47,8 @@ TomlTable table(std::initializer_list<std::pair<const char*, TomlData>> members)
   return out;
 }
 
-// What the reader turns into exactly the value, close to `near` and short if it can be. Values that no file has said may
-// have none: then `near`.
+// What the reader turns into exactly the value, close to `near` and short if it can be. Values that no file has said
+// may have none: then `near`.
 template <class Read>
 double find_exact(double value, double near, const Read& read) {
   const double rounded = std::round(near * 1e9) / 1e9;

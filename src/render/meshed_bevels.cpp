@@ -122,9 +122,13 @@ class Mesher {
       if (!task.scale) object.world_from_object.linear = {};
       out_.edges += task.result.rounded_edges;
       out_.corners += task.result.rounded_corners;
-      out_.summaries.push_back({object.name, i, task.options.radius * task.scale.value_or(1),
-                                task.result.rounded_edges, task.result.rounded_corners,
-                                task.result.notes, {}});
+      out_.summaries.push_back({object.name,
+                                i,
+                                task.options.radius * task.scale.value_or(1),
+                                task.result.rounded_edges,
+                                task.result.rounded_corners,
+                                task.result.notes,
+                                {}});
     }
   }
 

@@ -1,6 +1,6 @@
 // creased_hit.h — what becomes of a hit on the mesh of a solid that is rounded by what balls fit
-// What       By searches of its surface and pipes (creased_solid.h), the same for the space outside where it has fillets;
-//            most hits need none, as they lie beside a plain stretch of a crease (plain_crease.h)
+// What       By searches of its surface and pipes (creased_solid.h), the same for the space outside where it has
+//            fillets; most hits need none, as they lie beside a plain stretch of a crease (plain_crease.h)
 #pragma once
 
 #include <cstdint>

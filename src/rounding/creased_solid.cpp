@@ -117,14 +117,14 @@ VoidCrossing CreasedSolid::cross_void(Vec3d x, Vec3d direction) const {
 }
 
 const CreaseShape& CreasedSolid::shape() const {
-  std::call_once(shape_->once, [&] {
+  std::call_once(made_shape->once, [&] {
     run_isolated([&] {
       CreaseShape made = make_crease_shape(surface, pipes.creases(), radius, tolerance);
       made.grooves = find_grooves(*this, made);
-      shape_->shape = std::move(made);
+      made_shape->shape = std::move(made);
     });
   });
-  return shape_->shape;
+  return made_shape->shape;
 }
 
 std::vector<std::pair<double, double>> CreasedSolid::find_sharp_parts(std::uint32_t face,

@@ -51,8 +51,8 @@ struct CreasedSolid {
                                                                         Vec3d p0, Vec3d p1) const;
   // How deep in balls a point is beneath the rounded surface.
   [[nodiscard]] double beneath() const;
-  // Whether a point of the solid lies beneath the rounded surface, by more than what rays are computed to, or by so many
-  // radii.
+  // Whether a point of the solid lies beneath the rounded surface, by more than what rays are computed to, or by so
+  // many radii.
   [[nodiscard]] bool is_beneath(Vec3d x, double radii = 0) const;
   [[nodiscard]] bool is_loose(std::uint32_t region) const {
     return std::ranges::binary_search(loose, region);
@@ -72,7 +72,7 @@ struct CreasedSolid {
     std::once_flag once;
     CreaseShape shape;
   };
-  std::unique_ptr<MadeShape> shape_ = std::make_unique<MadeShape>();
+  std::unique_ptr<MadeShape> made_shape = std::make_unique<MadeShape>();
 };
 
 // A linear function of the places of a triangle, by its corners, that is positive wherever the rounding has taken it

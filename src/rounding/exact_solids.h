@@ -1,6 +1,6 @@
 // exact_solids.h — the closed solids of a mesh that are rounded by what balls fit: creased ones, and fillets
-// What       Makes CreasedSolids of what isn't convex, with its hollows, or has edges of several radii, and of the space
-//            outside solids with concave edges; and tells the solids of Rounding::Data so
+// What       Makes CreasedSolids of what isn't convex, with its hollows, or has edges of several radii, and of the
+//            space outside solids with concave edges; and tells the solids of Rounding::Data so
 // Cost       on all cores
 #pragma once
 

@@ -39,8 +39,8 @@ struct MadeCreased {
   std::uint64_t thin_walls = 0;  // pairs of faces
 };
 
-// shells: the outside of one solid, then its hollows. Nothing: something about them is open, no edge has room, or facets
-// of a curved surface are too fine for the radius.
+// shells: the outside of one solid, then its hollows. Nothing: something about them is open, no edge has room, or
+// facets of a curved surface are too fine for the radius.
 std::optional<MadeCreased> make_creased_solid(const CreasedInput& input,
                                               std::span<const std::uint32_t> shells);
 

@@ -114,7 +114,7 @@ struct Rounding::Data {
   std::unique_ptr<const DetectionTree> tree;  // with Detection::kd_tree
   std::vector<std::unique_ptr<const CreasedSolid>> creased;
   std::vector<std::unique_ptr<const FilledSolid>> filled;
-  // Of creased and filled solids; plain_on: those of each triangle, from plain_begin on, which is empty if there are none.
+  // Of creased and filled solids; plain_on: those of each triangle, from plain_begin on, which is empty without.
   std::vector<PlainCrease> plain;
   std::vector<std::uint32_t> plain_begin, plain_on;
   // Parts of all fillets, and whose they are.
