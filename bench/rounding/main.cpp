@@ -12,6 +12,7 @@
 #include "rounding/camera_move.h"
 #include "rounding/detection.h"
 #include "rounding/export_scene.h"
+#include "rounding/model_scene.h"
 #include "rounding/scenes.h"
 #include "rounding/table.h"
 
@@ -22,6 +23,8 @@ using namespace arris::bench;  // NOLINT(google-build-using-namespace): a progra
 
 struct Arguments {
   std::vector<std::string> scenes = bench_scene_names();
+  std::vector<std::string> models;
+  std::string model_radius;
   std::string methods = "none,exact,mesh:1,mesh:3,mesh:5,mesh:10,shader";
   TableOptions table;
   int move_frames = 12;
@@ -47,8 +50,10 @@ json json_of(const Table& table) {
                 {"round_seconds", p.round_seconds},
                 {"rounded_edges", p.rounded_edges},
                 {"rounded_corners", p.rounded_corners},
+                {"notes", merged_notes(p)},
                 {"rays", row.rays.total},
                 {"rays_rounded", row.rays.rounded}});
+      if (const auto bytes = bytes_per_edge(p)) r["bytes_per_edge"] = *bytes;
     }
     rows.push_back(std::move(r));
   }
@@ -101,6 +106,11 @@ void run(const Arguments& arguments) {
       results["detection"][name] = json_of(detection);
     }
   }
+  for (const std::string& model : arguments.models) {
+    const Table table = measure_table(make_model_scene(model, arguments.model_radius), options);
+    show(text_of(table));
+    results["tables"].push_back(json_of(table));
+  }
   if (arguments.move_frames > 0) {
     const auto frames =
         measure_camera_move(make_bench_scene("blocks"), arguments.move_frames, options);
@@ -129,6 +139,12 @@ int main(int argc, char** argv) {
   app.add_option("--scenes", arguments.scenes,
                  "scene1 scene2 scene3 blocks cornell bracket boss pockets brackets")
       ->delimiter(',');
+  app.add_option("--models", arguments.models,
+                 "model files, instead of scenes that are not asked for; none and exact");
+  app.add_option(
+      "--model-radius", arguments.model_radius,
+      "of models: auto, a length, or a percentage such as 8% (default: auto, or what the "
+      "file says)");
   app.add_option("--methods", arguments.methods,
                  "none, exact, mesh:N, shader; ratios are to the first")
       ->capture_default_str();
@@ -147,6 +163,11 @@ int main(int argc, char** argv) {
   app.add_option("--export", arguments.export_folder,
                  "only write the scenes for cycles.py to this folder");
   CLI11_PARSE(app, argc, argv);
+  if (!arguments.models.empty()) {
+    if (app.count("--scenes") == 0) arguments.scenes.clear();
+    if (app.count("--methods") == 0) arguments.methods = "none,exact";
+    if (app.count("--camera-move") == 0) arguments.move_frames = 0;
+  }
   try {
     arguments.table.methods = parse_methods(arguments.methods);
     if (arguments.export_folder.empty()) {

@@ -18,8 +18,8 @@ namespace arris::bench {
 struct BenchScene {
   std::string name;  // as on the command line
   std::string title;
-  Scene scene;  // scene.rounding rounds all objects but those that ask for none
-  double radius = 0;
+  Scene scene;        // scene.rounding rounds all objects but those that ask for none
+  double radius = 0;  // 0: the objects say it, or it is automatic
 };
 
 // Names that make_bench_scene() knows, in the order of the paper's table.

@@ -1,7 +1,7 @@
 // table.h — the paper's Table 1 and Fig. 8 for one scene
 // Source     Courtin et al., Table 1: triangles, time and memory for no rounding, the method, bevel meshes with 1 to
 //            10 subdivisions and the bevel shader; Fig. 8: rounded edges and corners, share of rays affected,
-//            build times
+//            build times. Bytes of rounding for each rounded edge, and what the rounding has to say of what it left
 #pragma once
 
 #include <filesystem>
@@ -39,6 +39,11 @@ struct Table {
   double radius = 0;
   std::vector<TableRow> rows;
 };
+
+// Empty where no edge is rounded.
+std::optional<double> bytes_per_edge(const PrepareStats& prepared);
+// The same note of several objects once, with the sum of their counts.
+std::vector<std::string> merged_notes(const PrepareStats& prepared);
 
 Table measure_table(const BenchScene& bench, const TableOptions& options);
 std::string text_of(const Table& table);
