@@ -250,8 +250,8 @@ std::optional<SurfacePoint> World::trace_meshes(const arris::Ray& ray,
     }
     // 3. The hit stands after all; or the surface is on a fillet before the hit, or further in, on an edge's cylinder
     //    or a corner's sphere: another solid that reaches in there may still be nearer. The search starts again from
-    //    the origin, so a neighbour that touches the solid is met at its surface. A surface that the ray leaves is the one
-    //    where it starts, on the wrong side by rounding errors, as all rays come from outside.
+    //    the origin, so a neighbour that touches the solid is met at its surface. A surface that the ray leaves is the
+    //    one where it starts, on the wrong side by rounding errors, as all rays come from outside.
     const bool leaves = arris::dot(surface.normal, ray.direction) > 0;
     if (!passes && !leaves) {
       if (!moves) {

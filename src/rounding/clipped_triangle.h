@@ -12,7 +12,7 @@ namespace arris {
 
 class ClippedTriangle {
  public:
-  explicit ClippedTriangle(const std::array<Vec3d, 3>& corners) : count_(3) {
+  explicit ClippedTriangle(const std::array<Vec3d, 3>& corners) {
     std::copy(corners.begin(), corners.end(), points_.begin());
   }
 
@@ -35,7 +35,7 @@ class ClippedTriangle {
  private:
   static constexpr std::size_t kMost = 8;  // each cut adds one
   std::array<Vec3d, kMost> points_;
-  std::size_t count_;
+  std::size_t count_ = 3;
 };
 
 }  // namespace arris

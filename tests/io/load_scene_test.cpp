@@ -110,10 +110,10 @@ TEST_F(LoadScene, reads_no_other_file_where_none_is_allowed) {
         refusal_of(write("a.csg", std::string(call) + "(file = \"" + file + "\");\n"));
     EXPECT_THAT(message, HasSubstr("may not be used here")) << call;
   }
-  const std::string kAsset = R"({"asset": {"version": "2.0"}, )";
+  const std::string asset = R"({"asset": {"version": "2.0"}, )";
   for (const std::string uri : {"secret.dat", "gone.dat"}) {
     const std::string message = refusal_of(
-        write("a.gltf", kAsset + R"("buffers": [{"byteLength": 4, "uri": ")" + uri + "\"}]}"));
+        write("a.gltf", asset + R"("buffers": [{"byteLength": 4, "uri": ")" + uri + "\"}]}"));
     EXPECT_THAT(message, HasSubstr("may not be read here; put all into one .glb")) << uri;
   }
   EXPECT_THAT(refusal_of(write("a.toml", "[[object]]\nfile = \"secret.stl\"\n")),
