@@ -28,6 +28,8 @@ constexpr int kMostSteps = 2000;
 constexpr std::size_t kCurvesAtOnce = 64;
 // Radii that differ by no more are the same.
 constexpr double kSameRadius = 1e-9;
+// Of the radius: what two edges that go on from each other may differ by at one place.
+constexpr double kHidden = 1e-3;
 
 struct Interval {
   double low, high;
@@ -45,8 +47,10 @@ class VariedFinder {
   }
 
   VariedCreases run() {
-    settle();
-    make_field();
+    do {
+      settle();
+      make_field();
+    } while (lower_hidden());
     for (const auto& [radius, found] : classes_) {
       if (is_used(radius)) add_class(radius, found.curves);
     }
@@ -263,6 +267,7 @@ class VariedFinder {
 
   void make_field() {
     find_corners();
+    profiles_.clear();
     for (Edge& e : edges_) {
       const std::optional<Ends> ends = is_even(e) ? std::nullopt : ends_of(e);
       profiles_.push_back(
@@ -270,6 +275,32 @@ class VariedFinder {
                : EdgeProfile{e.p0, e.direction, e.length, {{0, e.radius}, {e.length, e.radius}}});
     }
     out_.field = RadiusField(profiles_);
+  }
+
+  // Where another edge is nearer to a place that an edge's balls touch, the field would not know of them. True: some were.
+  bool lower_hidden() {
+    std::vector<std::size_t> hidden;
+    for (std::size_t i = 0; i < edges_.size(); ++i) {
+      if (is_hidden(edges_[i], profiles_[i])) hidden.push_back(i);
+    }
+    for (const std::size_t i : hidden) lower(edges_[i]);
+    return !hidden.empty();
+  }
+
+  [[nodiscard]] bool is_hidden(const Edge& e, const EdgeProfile& profile) const {
+    const int steps =
+        std::clamp(int(std::ceil(e.length / (kStep * out_.field.largest()))), 8, kMostSteps);
+    for (int i = 1; i < steps; ++i) {
+      const double v = e.length * i / steps, radius = profile.at(v);
+      // At the ends other faces are touched.
+      if (radius == 0 || std::min(v, e.length - v) < radius) continue;
+      const Vec3d c = center_at(e, {v, radius});
+      for (const std::uint32_t face : {e.faces.first, e.faces.second}) {
+        const Vec3d touching = c + in_.regions.planes[face].normal * radius;
+        if (std::abs(out_.field.at(touching) - radius) > kHidden * radius) return true;
+      }
+    }
+    return false;
   }
 
   [[nodiscard]] bool is_used(double radius) const {
