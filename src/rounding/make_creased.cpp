@@ -79,6 +79,11 @@ class CreasedMaker {
     if (!keep_faces(surface, creases, thin)) return std::nullopt;
     std::vector<std::uint32_t> loose;
     for (const FacePair& pair : thin) loose.push_back(pair.first);
+    // The field knows the nearest edge alone: where edges turn by different angles, it may miss a rounding's end.
+    if (!found.field.is_uniform()) {
+      for (const SurfaceTriangle& t : surface.triangles()) loose.push_back(t.region);
+      std::ranges::sort(loose);
+    }
     loose.erase(std::unique(loose.begin(), loose.end()), loose.end());
     surface.set_thin(std::move(thin));
     std::vector<TriangleBand> bands = parallel_collect<TriangleBand>(

@@ -2,7 +2,7 @@
 // What       Each corner has the median radius of its convex edges, and the creases about it are those of that one
 //            radius (creases.h). Along an edge the radius then turns to the edge's own, by balls between its two faces:
 //            the cone that these fill touches both. An edge without radius stays sharp between its corners.
-//            Balls of all radii lie in the solid, so what is left of it is closed.
+//            Balls of all radii lie in the solid, but the field knows the nearest edge alone.
 // In / Out   coordinates relative to the solid's centre
 // Guarantee  the profile of an edge is a smooth step of kTransitionSteps pieces, twice as long as the radius changes by
 // Limits     an edge too short for its transitions, or without room for them, takes a radius of its ends, or these take

@@ -244,6 +244,27 @@ TEST(VariedRadii, edges_without_radius_stay_sharp_between_their_corners) {
   EXPECT_EQ(corner->feature, Feature::corner);
 }
 
+// A chamfer's edges turn less and are nearer to where the large ball touches than its own edge.
+TEST(VariedRadii, large_radii_beside_edges_that_turn_less_leave_no_holes) {
+  const TriangleSoup mesh =
+      prism_over("chamfered", {{0, 0}, {1.7, 0}, {2.7, 1}, {2.7, 3}, {0, 3}}, {8, 1, 0});
+  RoundingOptions options;
+  options.radius = 0.2;
+  EdgeRule rule;
+  rule.radius = 1;
+  rule.segments = {{Vec3d(0, 0, -9), Vec3d(0, 0, 9)}};
+  options.rules = {rule};
+  const Rounding rounding = make_rounding(mesh.view(), options, mesh.name);
+  EXPECT_FALSE(rounding.report().clamped.empty());
+  Random rng(2);
+  for (int i = 0; i < 2000; ++i) {
+    const Vec3d from(uniform(rng, 0, 2.7), -1, uniform(rng, 2, 6));
+    const auto hit = trace({from, {0, 1, 0}}, {mesh.view(), &rounding});
+    ASSERT_TRUE(hit);
+    EXPECT_LT(hit->t, 2.05 + (from.x > 1.7 ? from.x - 1.7 : 0));
+  }
+}
+
 TEST(VariedRadii, edges_that_are_too_short_take_the_smaller_radius_and_are_told) {
   Random rng(5);
   RoundedBox box = make_box({0.35, 1, 1}, rng, {0.05});
