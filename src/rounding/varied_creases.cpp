@@ -277,7 +277,8 @@ class VariedFinder {
     out_.field = RadiusField(profiles_);
   }
 
-  // Where another edge is nearer to a place that an edge's balls touch, the field would not know of them. True: some were.
+  // Where another edge is nearer to a place that an edge's balls touch, the field would not know of them. True: some
+  // were.
   bool lower_hidden() {
     std::vector<std::size_t> hidden;
     for (std::size_t i = 0; i < edges_.size(); ++i) {
