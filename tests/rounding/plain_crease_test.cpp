@@ -110,6 +110,14 @@ class Comparison {
     }
   }
 
+  // The smallest of all solids'.
+  [[nodiscard]] double tolerance() const {
+    double least = INFINITY;
+    for (const auto& solid : data().creased) least = std::min(least, solid->tolerance);
+    for (const auto& solid : data().filled) least = std::min(least, solid->outside.tolerance);
+    return least;
+  }
+
   // A hit that is kept by less than the tolerance may as well have moved by next to nothing.
   [[nodiscard]] bool is_same(const Ray& ray, const MeshHit& hit, const Resolution& a,
                              const Resolution& b) const {
@@ -119,8 +127,14 @@ class Comparison {
                                                      : std::numeric_limits<double>::infinity();
     };
     if (a.outcome == Resolution::Outcome::passed && b.outcome == a.outcome) return true;
-    const double apart = std::abs(place(a) - place(b)) * length(ray.direction);
-    if (!(apart < 1e-5 * r_)) return false;
+    double apart = std::abs(place(a) - place(b)) * length(ray.direction);
+    double most = 1e-5 * r_;
+    if (a.outcome == b.outcome && a.outcome == Resolution::Outcome::moved) {
+      // Creases lie where they should by a tolerance, so that one may hide another's pipe by as much.
+      apart *= std::abs(dot(a.hit.normal, ray.direction)) / length(ray.direction);
+      most += tolerance();
+    }
+    if (!(apart < most)) return false;
     return a.outcome != b.outcome || a.outcome == Resolution::Outcome::kept ||
            dot(a.hit.normal, b.hit.normal) > 0.9999;
   }
