@@ -1,6 +1,7 @@
 #include "render/rounded_trace.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 namespace arris {
@@ -210,8 +211,8 @@ std::optional<float> RoundedTrace::way_past(const RoundedGeometry& g, const Cand
 std::optional<SurfaceHit> RoundedTrace::trace_from_void() const {
   const std::optional<Found> found = trace_filtered(ray_, nullptr);
   if (!found) return std::nullopt;
-  SurfaceHit hit = finish(*found);
-  hit.rounding_seen = is_rounded(hit.feature);  // as if traced from beyond the void
+  std::optional<SurfaceHit> hit = next_hit(*found);
+  if (hit) hit->rounding_seen = is_rounded(hit->feature);  // as if traced from beyond the void
   return hit;
 }
 
@@ -256,7 +257,12 @@ std::optional<SurfaceHit> RoundedTrace::passed(const RTCRayHit& query,
   if (verdict.entering && is_surface && leaves_kept(query, next->query)) {
     return make_surface_hit(geometry_, ray_, query);
   }
-  return finish(*next);
+  return next_hit(*next);
+}
+
+std::optional<SurfaceHit> RoundedTrace::next_hit(const Found& found) const {
+  if (found.verdict.outcome != Resolution::Outcome::moved) return finish(found);
+  return moved(found.query, found.verdict);
 }
 
 // The next hit is the way out of the same solid, through what is kept of it.
@@ -319,6 +325,8 @@ std::optional<RoundedTrace::Found> RoundedTrace::search(const SceneGeometry& geo
   context.base.filter = filter_passed;
   RTCRayHit query;
   query.ray = make_ray(range);
+  // Embree's ranges are open at their begin.
+  query.ray.tnear = std::nextafter(query.ray.tnear, 0.0F);
   query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
   query.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
   rtcIntersect1(geometry.embree.handle(), &context.base, &query);

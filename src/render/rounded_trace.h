@@ -204,6 +204,8 @@ class RoundedTrace {
                                                 const Verdict& verdict) const;
   [[nodiscard]] std::optional<SurfaceHit> passed(const RTCRayHit& query,
                                                  const Verdict& verdict) const;
+  // What was found beyond a hit that was passed.
+  [[nodiscard]] std::optional<SurfaceHit> next_hit(const Found& found) const;
   [[nodiscard]] std::optional<float> way_past(const RoundedGeometry& g, const Candidate& c,
                                               const Verdict& verdict) const;
   [[nodiscard]] bool leaves_kept(const RTCRayHit& entry, const RTCRayHit& exit) const;

@@ -137,7 +137,7 @@ class Maker {
         for (EdgeRule& rule : task.options.rules) rule.radius /= rule.is_part ? 1 : *task.scale;
         const auto key =
             std::tuple(record(i).mesh.index, task.options.radius, int(settings.edges),
-                       settings.min_angle, int(settings.on_overlap), number_of(settings.rules));
+                       settings.min_angle, int(settings.on_overlap), number_of(task.options.rules));
         const auto [at, is_new] = shared.try_emplace(key, tasks_.size());
         if (!is_new) {
           Task& same = tasks_[at->second];
@@ -153,9 +153,9 @@ class Maker {
 
   // The same for equal rules.
   std::size_t number_of(const std::vector<EdgeRule>& rules) {
-    const auto known = std::ranges::find(rules_, rules);
-    if (known == rules_.end()) rules_.push_back(rules);
-    return std::size_t(std::ranges::find(rules_, rules) - rules_.begin());
+    const auto known = std::size_t(std::ranges::find(rules_, rules) - rules_.begin());
+    if (known == rules_.size()) rules_.push_back(rules);
+    return known;
   }
 
   void build(Task& task) const {
@@ -244,7 +244,7 @@ class Maker {
   const SceneRounding* before_;
   SceneRounding out_;
   std::vector<Task> tasks_;
-  std::vector<std::vector<EdgeRule>> rules_;
+  std::vector<std::vector<EdgeRule>> rules_;  // of the tasks, each once
 };
 
 Vec3d center_of(const Mesh& mesh, const Affine3d& m) {

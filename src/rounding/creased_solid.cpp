@@ -192,8 +192,9 @@ bool CreasedSolid::is_through_material(Vec3d x, std::uint32_t region, Vec3d dire
 
 std::optional<EdgeBlend> CreasedSolid::blend_at(Vec3d x, Vec3d normal) const {
   if (!surface.is_curved()) return std::nullopt;
-  const Vec3d c = x - normal * radius;
-  const double most = radius + 2 * tolerance;
+  const double r = field.at(x);
+  const Vec3d c = x - normal * r;
+  const double most = r + 2 * tolerance;
   std::vector<EdgeBlend::Side> touched;
   surface.for_each_near(c - Vec3d(most), c + Vec3d(most), [&](const SurfaceTriangle& t) {
     const Vec3d p = nearest_on_triangle(c, t);

@@ -36,8 +36,9 @@ struct CreasedSolid {
   RadiusField field{0};
   double radius = 0;     // the largest
   double tolerance = 0;  // crease_tolerance()
-  std::vector<std::uint32_t>
-      loose;  // regions with edges that stay sharp though they should not; sorted
+  // Regions beside which voids may have open ends: at edges that stay sharp, and where edges have several
+  // radii; sorted.
+  std::vector<std::uint32_t> loose;
 
   // Which part of the balls is surface, for outlines: made on all cores when it is first asked for.
   [[nodiscard]] const CreaseShape& shape() const;

@@ -24,8 +24,7 @@ class ExactMaker {
   }
 
  private:
-  // Of each shell that is no hollow: it and its hollows, if they are for a CreasedSolid. Whoever wants networks gets
-  // local ones.
+  // Of each shell that is no hollow: it and its hollows, if they are for a CreasedSolid.
   [[nodiscard]] std::vector<std::vector<std::uint32_t>> shells_for_creases() const {
     std::vector<std::vector<std::uint32_t>> solids;
     if (in_.options.edges == RoundEdges::concave) return solids;
@@ -43,8 +42,8 @@ class ExactMaker {
   [[nodiscard]] bool has_own_radii(std::uint32_t s) const {
     bool any = false;
     if (!in_.radii.empty()) {
-      for_convex_edges(in_.welded, in_.kinds, s,
-                       [&](std::uint32_t h) { any = any || in_.radii[h] != in_.options.radius; });
+      for_edges_of(EdgeKind::convex, in_.welded, in_.kinds, s,
+                   [&](std::uint32_t h) { any = any || in_.radii[h] != in_.options.radius; });
     }
     return any;
   }
@@ -160,14 +159,8 @@ class ExactMaker {
   }
 
   [[nodiscard]] std::uint64_t concave_edges_of(std::uint32_t s) const {
-    const Shell& shell = in_.welded.shells[s];
     std::uint64_t count = 0;
-    for (std::uint32_t i = 0; i < shell.triangle_count; ++i) {
-      const std::uint32_t t = in_.welded.triangles_by_shell[shell.first_triangle + i];
-      for (std::uint32_t h = 3 * t; h < 3 * t + 3; ++h) {
-        count += in_.kinds[h] == EdgeKind::concave && h < in_.welded.twin[h] ? 1 : 0;
-      }
-    }
+    for_edges_of(EdgeKind::concave, in_.welded, in_.kinds, s, [&](std::uint32_t) { ++count; });
     return count;
   }
 

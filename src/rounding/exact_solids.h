@@ -38,15 +38,15 @@ struct MadeExact {
 
 MadeExact make_exact_solids(const ExactInput& input, Rounding::Data& data);
 
-// Visits a half-edge of each convex edge of a shell.
+// Visits a half-edge of each edge of a kind that a shell has.
 template <class Visit>
-void for_convex_edges(const WeldedMesh& mesh, std::span<const EdgeKind> kinds, std::uint32_t s,
-                      const Visit& visit) {
+void for_edges_of(EdgeKind kind, const WeldedMesh& mesh, std::span<const EdgeKind> kinds,
+                  std::uint32_t s, const Visit& visit) {
   const Shell& shell = mesh.shells[s];
   for (std::uint32_t i = 0; i < shell.triangle_count; ++i) {
     const std::uint32_t t = mesh.triangles_by_shell[shell.first_triangle + i];
     for (std::uint32_t h = 3 * t; h < 3 * t + 3; ++h) {
-      if (kinds[h] == EdgeKind::convex && h < mesh.twin[h]) visit(h);
+      if (kinds[h] == kind && h < mesh.twin[h]) visit(h);
     }
   }
 }

@@ -75,8 +75,15 @@ class CreasedMaker {
     const std::uint64_t thin_walls = thin.size() / 2;
     // Edges that stay sharp end thin walls, too.
     for (const auto& [a, b] : found.missing) thin.insert(thin.end(), {{a, b}, {b, a}});
+    sort_pairs(thin);
     surface.set_thin(thin);
-    if (!keep_faces(surface, creases, thin)) return std::nullopt;
+    const std::vector<FacePair> hidden = pairs_that_hide_faces(surface, creases);
+    if (!hidden.empty()) {
+      if (in_.is_outside) return std::nullopt;
+      thin.insert(thin.end(), hidden.begin(), hidden.end());
+      sort_pairs(thin);
+      surface.set_thin(thin);
+    }
     std::vector<std::uint32_t> loose;
     for (const FacePair& pair : thin) loose.push_back(pair.first);
     // The field knows the nearest edge alone: where edges turn by different angles, it may miss a rounding's end.
@@ -85,7 +92,6 @@ class CreasedMaker {
       std::ranges::sort(loose);
     }
     loose.erase(std::unique(loose.begin(), loose.end()), loose.end());
-    surface.set_thin(std::move(thin));
     std::vector<TriangleBand> bands = parallel_collect<TriangleBand>(
         triangles_.size(), kTrianglesAtOnce,
         [&](std::size_t i, auto& list) { append_bands(surface, triangles_[i], list); });
@@ -134,9 +140,8 @@ class CreasedMaker {
       if (in_.kinds[h] == EdgeKind::smooth) smooth.push_back(faces);
       if (in_.kinds[h] == EdgeKind::convex) sharp.push_back(faces);
     });
-    std::ranges::sort(smooth);
-    std::ranges::sort(sharp);
-    smooth.erase(std::unique(smooth.begin(), smooth.end()), smooth.end());
+    sort_pairs(smooth);
+    sort_pairs(sharp);
     if (!smooth.empty()) {
       surface.set_joined(find_smooth_reach({surface, smooth, sharp, in_.regions, r_}));
     }
@@ -177,10 +182,15 @@ class CreasedMaker {
     return near / sampled * triangles.size() > kMostPairs;
   }
 
-  // No face vanishes that walls too near have taken away: each is kept somewhere, or has a crease, or one near. What is
-  // too near to another counts as the far side of a thin wall. False: the space outside would need it.
-  [[nodiscard]] bool keep_faces(const SolidSurface& surface, std::span<const CreaseCurve> creases,
-                                std::vector<FacePair>& thin) const {
+  static void sort_pairs(std::vector<FacePair>& pairs) {
+    std::ranges::sort(pairs);
+    pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
+  }
+
+  // No face vanishes that walls too near have taken away: each is kept somewhere, or has a crease, or one near. Comes
+  // out: the others and what is too near to them, each pair in both orders.
+  [[nodiscard]] std::vector<FacePair> pairs_that_hide_faces(
+      const SolidSurface& surface, std::span<const CreaseCurve> creases) const {
     std::vector<std::uint32_t> rounded;
     for (const CreaseCurve& c : creases) rounded.insert(rounded.end(), {c.face_a, c.face_b});
     std::ranges::sort(rounded);
@@ -194,7 +204,7 @@ class CreasedMaker {
       return found;
     };
     const double least = r_ - crease_tolerance(outer_.size(), r_);
-    const std::size_t before = thin.size();
+    std::vector<FacePair> pairs;
     for (const SurfaceTriangle& t : surface.triangles()) {
       if (std::ranges::binary_search(rounded, t.region)) continue;
       const Vec3d middle = (t.p0 + t.p1 + t.p2) / 3.0;
@@ -203,14 +213,11 @@ class CreasedMaker {
       surface.for_each_near(c - Vec3d(least), c + Vec3d(least), [&](const SurfaceTriangle& other) {
         if (other.region == t.region || surface.is_joined(t.region, other.region)) return;
         if (length(c - nearest_on_triangle(c, other)) >= least) return;
-        thin.emplace_back(t.region, other.region);
-        thin.emplace_back(other.region, t.region);
+        pairs.emplace_back(t.region, other.region);
+        pairs.emplace_back(other.region, t.region);
       });
     }
-    if (thin.size() > before && in_.is_outside) return false;
-    std::ranges::sort(thin);
-    thin.erase(std::unique(thin.begin(), thin.end()), thin.end());
-    return true;
+    return pairs;
   }
 
   [[nodiscard]] BoxTree tree_of(std::span<const CreaseCurve> creases) const {

@@ -241,7 +241,7 @@ class RoundingMaker {
     if (radii_.empty()) return;
     for (std::uint32_t s = 0; s < data_->solids.size(); ++s) {
       const bool creased = data_->solids[s].creased != kNone;
-      for_convex_edges(welded_, kinds_, s, [&](std::uint32_t h) {
+      for_edges_of(EdgeKind::convex, welded_, kinds_, s, [&](std::uint32_t h) {
         if (radii_[h] == 0) {
           kinds_[h] = kinds_[welded_.twin[h]] = EdgeKind::smooth;
           ++sharp_by_rule_;

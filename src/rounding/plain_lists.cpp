@@ -105,9 +105,13 @@ void PlainLists::add_crease(const CreasedSolid& solid, Vec3d center, PlainCrease
     if (strip.is_empty()) return;
     if (is_callers) triangles.push_back(t.index);
     if (!may_be_covered) return;
-    if (!is_callers) stretch.cut(stretch.s0, stretch.s1);
-    for (std::uint32_t i = cover_begin_[t.index]; is_callers && i < cover_begin_[t.index + 1]; ++i)
+    if (!is_callers) {
+      stretch = {0, 0};  // its covers aren't known
+      return;
+    }
+    for (std::uint32_t i = cover_begin_[t.index]; i < cover_begin_[t.index + 1]; ++i) {
       strip.cut(covers_[i], stretch);
+    }
   });
   if (!(stretch.s0 < stretch.s1)) return;
   crease.p0 += crease.axis * stretch.s0;

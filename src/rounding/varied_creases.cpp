@@ -4,7 +4,9 @@
 #include <array>
 #include <cmath>
 #include <map>
+#include <numeric>
 #include <optional>
+#include <set>
 #include <unordered_map>
 #include <utility>
 
@@ -21,7 +23,6 @@ constexpr double kTransition = 2;
 constexpr double kMargin = 0.25;
 // A radius is halved so often where there is no room.
 constexpr int kHalvings = 3;
-constexpr int kMostRounds = 200;
 // In radii: steps in which a curve is looked at; and most of them.
 constexpr double kStep = 0.25;
 constexpr int kMostSteps = 2000;
@@ -51,8 +52,9 @@ class VariedFinder {
       settle();
       make_field();
     } while (lower_hidden());
+    const std::set<double> used = used_radii();
     for (const auto& [radius, found] : classes_) {
-      if (is_used(radius)) add_class(radius, found.curves);
+      if (used.contains(radius)) add_class(radius, found.creases.curves);
     }
     for (std::size_t i = 0; i < edges_.size(); ++i) {
       if (profiles_[i].knots.size() > 2) add_transitions(edges_[i], profiles_[i]);
@@ -74,6 +76,10 @@ class VariedFinder {
     double length;
     double asked, radius;
     bool is_missing = false;
+  };
+  struct Class {
+    FoundCreases creases;
+    std::vector<CreaseCurve> lines;  // of these, between faces; sorted by them
   };
   // Radii of an edge's ends, and how far each goes.
   struct Ends {
@@ -100,37 +106,38 @@ class VariedFinder {
           const Vec3d along = local(e.vertex1) - e.p0;
           e.length = length(along);
           e.direction = along / e.length;
+          for (const std::uint32_t v : {e.vertex0, e.vertex1}) {
+            edges_at_[v].push_back(std::uint32_t(edges_.size()));
+          }
           edges_.push_back(e);
         }
       }
     }
   }
 
-  [[nodiscard]] const FoundCreases& class_of(double radius) {
+  static FacePair faces_of(const CreaseCurve& c) { return {c.face_a, c.face_b}; }
+
+  [[nodiscard]] const Class& class_of(double radius) {
     const auto [at, is_new] = classes_.try_emplace(radius);
-    if (is_new) {
-      at->second = find_creases({in_.mesh, in_.regions, in_.kinds, in_.shells, in_.surface,
-                                 in_.center, in_.size, radius});
-      auto& lines = lines_[radius];
-      for (const CreaseCurve& c : at->second.curves) {
-        if (c.is_line && c.face_b != kNone) lines.emplace_back(FacePair(c.face_a, c.face_b), c);
-      }
-      std::ranges::stable_sort(lines, {}, [](const auto& line) { return line.first; });
+    Class& made = at->second;
+    if (!is_new) return made;
+    made.creases = find_creases(
+        {in_.mesh, in_.regions, in_.kinds, in_.shells, in_.surface, in_.center, in_.size, radius});
+    for (const CreaseCurve& c : made.creases.curves) {
+      if (c.is_line && c.face_b != kNone) made.lines.push_back(c);
     }
-    return at->second;
+    std::ranges::sort(made.lines, {}, faces_of);
+    return made;
   }
 
   // Where along an edge balls of the radius touch both of its faces and nothing else.
   [[nodiscard]] std::vector<Interval> room(const Edge& e, double radius) {
-    (void)class_of(radius);
-    const auto& lines = lines_[radius];
+    const std::vector<CreaseCurve>& lines = class_of(radius).lines;
     std::vector<Interval> room;
-    for (auto at =
-             std::ranges::lower_bound(lines, e.faces, {}, [](const auto& l) { return l.first; });
-         at != lines.end() && at->first == e.faces; ++at) {
-      const CreaseCurve& c = at->second;
-      const double v0 = dot(c.at(c.u0) - e.p0, e.direction);
-      const double v1 = dot(c.at(c.u1) - e.p0, e.direction);
+    for (auto c = std::ranges::lower_bound(lines, e.faces, {}, faces_of);
+         c != lines.end() && faces_of(*c) == e.faces; ++c) {
+      const double v0 = dot(c->at(c->u0) - e.p0, e.direction);
+      const double v1 = dot(c->at(c->u1) - e.p0, e.direction);
       const Interval piece{std::min(v0, v1), std::max(v0, v1)};
       if (piece.high > 0 && piece.low < e.length) room.push_back(piece);
     }
@@ -138,32 +145,36 @@ class VariedFinder {
   }
 
   // Corners have the median radius of their edges, the smaller one of two, or what is left of it.
-  void find_corners() {
-    std::vector<std::pair<std::uint32_t, double>> radii;
-    for (const Edge& e : edges_) {
-      radii.emplace_back(e.vertex0, e.radius);
-      radii.emplace_back(e.vertex1, e.radius);
-    }
+  void set_corner(std::uint32_t vertex) {
+    std::vector<double> radii;
+    for (const std::uint32_t i : edges_at_.at(vertex)) radii.push_back(edges_[i].radius);
     std::ranges::sort(radii);
-    corners_.clear();
-    for (std::size_t i = 0, end = 0; i < radii.size(); i = end) {
-      while (end < radii.size() && radii[end].first == radii[i].first) ++end;
-      const auto cap = caps_.find(radii[i].first);
-      const double median = radii[i + (end - i - 1) / 2].second;
-      corners_[radii[i].first] = cap == caps_.end() ? median : std::min(median, cap->second);
-    }
+    const double median = radii[(radii.size() - 1) / 2];
+    const auto cap = caps_.find(vertex);
+    corners_[vertex] = cap == caps_.end() ? median : std::min(median, cap->second);
   }
 
+  // Radii only fall, so this ends.
   void settle() {
-    for (int round = 0; round < kMostRounds; ++round) {
-      find_corners();
-      bool changed = false;
-      for (Edge& e : edges_) {
-        if (fits(e)) continue;
-        lower(e);
-        changed = true;
+    std::vector<std::uint32_t> waiting(edges_.size());
+    std::iota(waiting.rbegin(), waiting.rend(), 0U);
+    std::vector<bool> waits(edges_.size(), true);
+    for (const auto& [vertex, edges] : edges_at_) set_corner(vertex);
+    while (!waiting.empty()) {
+      const std::uint32_t i = waiting.back();
+      waiting.pop_back();
+      waits[i] = false;
+      Edge& e = edges_[i];
+      if (fits(e)) continue;
+      lower(e);
+      for (const std::uint32_t v : {e.vertex0, e.vertex1}) {
+        set_corner(v);
+        for (const std::uint32_t k : edges_at_.at(v)) {
+          if (waits[k]) continue;
+          waits[k] = true;
+          waiting.push_back(k);
+        }
       }
-      if (!changed) return;
     }
   }
 
@@ -190,9 +201,10 @@ class VariedFinder {
 
   // Whether the edge's radius and its transitions have room; an edge of one radius that has none is missing.
   [[nodiscard]] bool fits(Edge& e) {
+    e.is_missing = false;
     if (is_even(e)) {
       if (e.radius == 0) return true;
-      e.is_missing = std::ranges::binary_search(class_of(e.radius).missing, e.faces);
+      e.is_missing = std::ranges::binary_search(class_of(e.radius).creases.missing, e.faces);
       return !(e.is_missing && clamp_);
     }
     const std::optional<Ends> ends = ends_of(e);
@@ -266,7 +278,6 @@ class VariedFinder {
   }
 
   void make_field() {
-    find_corners();
     profiles_.clear();
     for (Edge& e : edges_) {
       const std::optional<Ends> ends = is_even(e) ? std::nullopt : ends_of(e);
@@ -304,8 +315,11 @@ class VariedFinder {
     return false;
   }
 
-  [[nodiscard]] bool is_used(double radius) const {
-    return std::ranges::any_of(edges_, [&](const Edge& e) { return e.radius == radius; });
+  [[nodiscard]] std::set<double> used_radii() const {
+    std::set<double> radii;
+    for (const Edge& e : edges_) radii.insert(e.radius);
+    for (const auto& [vertex, radius] : corners_) radii.insert(radius);
+    return radii;
   }
 
   // Whether the field has a curve's radius where the ball at a place of it touches.
@@ -376,9 +390,9 @@ class VariedFinder {
   bool clamp_;
   std::span<const double> radii_;
   std::vector<Edge> edges_;
-  std::unordered_map<std::uint32_t, double> corners_, caps_;               // by vertex
-  std::map<double, FoundCreases> classes_;                                 // by radius
-  std::map<double, std::vector<std::pair<FacePair, CreaseCurve>>> lines_;  // of these; sorted
+  std::unordered_map<std::uint32_t, std::vector<std::uint32_t>> edges_at_;  // by vertex
+  std::unordered_map<std::uint32_t, double> corners_, caps_;                // the same
+  std::map<double, Class> classes_;                                         // by radius
   std::vector<EdgeProfile> profiles_;
   VariedCreases out_;
 };

@@ -504,5 +504,28 @@ TEST(rounded_scene, instances_of_one_mesh_in_one_another) {
   expect_few_wrong(world, 0);
 }
 
+// Of three objects that share a mesh the third is as the first, twice as large; the second's rules are others in the
+// mesh's own units.
+TEST(rounded_scene, instances_share_a_rounding_where_rules_are_the_same_to_them) {
+  Scene scene;
+  scene.camera = Camera{.position = {9, 9, 9}, .target = {}};
+  scene.environment = ConstantEnvironment{};
+  scene.materials.emplace_back();
+  scene.meshes.push_back(mesh_of(make_mesh(cube(), {}, 1)));
+  for (const auto& [scale, edge_radius] : {std::pair(1.0, 0.04), {2.0, 0.04}, {2.0, 0.08}}) {
+    Object object;
+    object.name = fmt::format("object {}", scene.objects.size());
+    object.world_from_object.linear = scaling(scale);
+    object.rounding = rounded_by(0.1 * scale);
+    object.rounding->rules.emplace_back().radius = edge_radius;
+    scene.objects.push_back(object);
+  }
+  const SceneGeometry geometry(scene, EmbreeSceneOptions{.max_copied_triangles = 0});
+  const SceneRounding rounding = make_scene_rounding(geometry, std::nullopt, {});
+  ASSERT_EQ(rounding.geometries.size(), 3U);
+  EXPECT_NE(rounding.geometries[0].rounding, rounding.geometries[1].rounding);
+  EXPECT_EQ(rounding.geometries[0].rounding, rounding.geometries[2].rounding);
+}
+
 }  // namespace
 }  // namespace arris::oracle

@@ -58,21 +58,13 @@ class Comparison {
   }
 
  private:
-  Vec3d direction() {
-    for (;;) {
-      const Vec3d v{uniform(rng_, -1, 1), uniform(rng_, -1, 1), uniform(rng_, -1, 1)};
-      const double l = length(v);
-      if (l > 0.1 && l <= 1) return v / l;
-    }
-  }
-
   Ray make_ray(int i) {
     std::uniform_int_distribution<std::size_t> pick(0, mesh_.triangles.size() - 1);
     const Triangle& t = mesh_.triangles[pick(rng_)];
     const Vec3d p(mesh_.positions[t[0]]), q(mesh_.positions[t[1]]), o(mesh_.positions[t[2]]);
     Vec3d target = p + (q - p) * (i % 5 == 0 ? 0.0 : uniform(rng_, 0, 1));
-    target += direction() * (uniform(rng_, 0, 1.5) * r_);
-    Vec3d d = direction();
+    target += random_direction(rng_) * (uniform(rng_, 0, 1.5) * r_);
+    Vec3d d = random_direction(rng_);
     if (i % 4 == 1) d = normalize(normalize(q - p) + d * uniform(rng_, 0, 0.4));
     if (i % 4 == 2) d = normalize(normalize((q - p) + (o - p)) + d * uniform(rng_, 0, 0.1));
     const double length_of_direction = std::pow(10, uniform(rng_, -1, 1));
@@ -84,7 +76,7 @@ class Comparison {
     const auto hit = trace(ray, {mesh_, &slow_});
     if (!hit || dot(hit->normal, ray.direction) > 0) return;
     const Vec3d x = ray.origin + ray.direction * hit->t;
-    Vec3d away = direction();
+    Vec3d away = random_direction(rng_);
     if (dot(away, hit->normal) < 0) away = -away;
     compare({x, away}, RayStart::outside, tally);
     compare({x, -away}, RayStart::inside, tally);
