@@ -141,14 +141,14 @@ class CreasedEdge {
     const auto at = [&](std::uint32_t v) {
       return transform_point(rounding_from_object, Vec3d(mesh.vertices[v])) - solid.center;
     };
-    kept_ = {at(edge.v0),
-             at(edge.v1),
-             Vec3d(data.faces[face0_].normal),
-             Vec3d(data.faces[face1_].normal),
-             face0_,
-             face1_};
+    between_ = {at(edge.v0),
+                at(edge.v1),
+                Vec3d(data.faces[face0_].normal),
+                Vec3d(data.faces[face1_].normal),
+                face0_,
+                face1_};
     for (const std::uint32_t v : mesh.triangles[edge.face1]) {
-      if (v != edge.v0 && v != edge.v1) convex_ = dot(kept_.normal0, at(v) - kept_.p0) < 0;
+      if (v != edge.v0 && v != edge.v1) convex_ = dot(between_.normal0, at(v) - between_.p0) < 0;
     }
   }
 
@@ -157,8 +157,7 @@ class CreasedEdge {
   // In the mesh's space; nothing: all of it is.
   [[nodiscard]] std::optional<std::vector<EdgeEnds>> find_kept() const {
     const std::vector<std::pair<double, double>> parts =
-        convex_ ? solid_->find_sharp_parts(face0_, face1_, kept_.p0, kept_.p1)
-                : find_kept_parts(*solid_, kept_);
+        convex_ ? solid_->find_sharp_parts(between_) : find_kept_parts(*solid_, between_);
     if (parts.size() == 1 && parts[0] == std::pair(0.0, 1.0)) return std::nullopt;
     const Vec3d p(mesh_.vertices[edge_.v0]), q(mesh_.vertices[edge_.v1]);
     std::vector<EdgeEnds> ends;
@@ -173,7 +172,7 @@ class CreasedEdge {
   const MeshEdge& edge_;
   std::uint32_t face0_, face1_;
   const CreasedSolid* solid_ = nullptr;
-  KeptEdge kept_{};
+  FaceEdge between_{};
   bool convex_ = false;
 };
 

@@ -359,7 +359,7 @@ std::vector<CreaseLine> find_crease_middles(const CreasedSolid& solid, Vec3d eye
 // fits but not all, it ends on creases. So what is kept begins and ends where a crease that touches the edge does, or
 // turns back along it.
 std::vector<std::pair<double, double>> find_kept_parts(const CreasedSolid& solid,
-                                                       const KeptEdge& edge) {
+                                                       const FaceEdge& edge) {
   const double slack = 2 * solid.tolerance;
   const Vec3d along = edge.p1 - edge.p0;
   const double extent = length(along);

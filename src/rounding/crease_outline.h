@@ -39,14 +39,8 @@ std::vector<CreaseLine> find_crease_outline(const CreasedSolid& solid, Vec3d eye
 // The middles of roundings both sides of which are seen.
 std::vector<CreaseLine> find_crease_middles(const CreasedSolid& solid, Vec3d eye);
 
-// A concave edge, and one of the faces beside it.
-struct KeptEdge {
-  Vec3d p0, p1;
-  Vec3d normal0, normal1;
-  std::uint32_t region0, region1;
-};
-// The parts of it on the rounded surface, by fractions of it.
+// The parts of a concave edge on the rounded surface, by fractions of it.
 std::vector<std::pair<double, double>> find_kept_parts(const CreasedSolid& solid,
-                                                       const KeptEdge& edge);
+                                                       const FaceEdge& edge);
 
 }  // namespace arris

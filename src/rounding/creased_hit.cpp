@@ -60,9 +60,6 @@ class CreasedHit {
   [[nodiscard]] bool is_kept(Vec3d x, std::uint32_t face) const {
     return inner_->is_kept(x, Vec3d(data_.faces[face].normal), face);
   }
-  [[nodiscard]] bool leaves_void(Vec3d direction, double end, std::uint32_t region) const {
-    return inner_->is_through_material(at_.x, at_.face, direction, end, region);
-  }
   [[nodiscard]] Resolution stay() const {
     return make(Resolution::Outcome::kept, at_.t, normal_, Feature::face);
   }
@@ -138,7 +135,6 @@ class CreasedHit {
   [[nodiscard]] Resolution into_void() const {
     const auto [met, exit] = inner_->cross_void(at_.x, at_.direction);
     if (met) {
-      if (leaves_void(at_.direction, met->t, kNone)) return stay();
       return make(Resolution::Outcome::moved, at_.t + met->t / at_.scale, met->normal,
                   feature_of(*met));
     }
@@ -146,18 +142,12 @@ class CreasedHit {
       return make(Resolution::Outcome::moved, at_.t + exit.t / at_.scale,
                   -Vec3d(data_.faces[exit.region].normal), Feature::fillet);
     }
-    if (exit.region != kNone && leaves_void(at_.direction, exit.t, exit.region)) return stay();
     return make(Resolution::Outcome::passed, at_.t, normal_, Feature::face);
   }
 
   // Looked at backwards.
   [[nodiscard]] Resolution from_inside() const {
-    const auto [met, exit] = inner_->cross_void(at_.x, -at_.direction);
-    if (met && leaves_void(-at_.direction, met->t, kNone)) return stay();
-    const double before = std::min(exit.t, at_.t * at_.scale);
-    if (!met && start_ == RayStart::inside && leaves_void(-at_.direction, before, exit.region)) {
-      return stay();
-    }
+    const auto met = inner_->cross_void(at_.x, -at_.direction).met;
     if (!met) return make(Resolution::Outcome::passed, at_.t, normal_, Feature::face);
     return make(Resolution::Outcome::moved, at_.t - met->t / at_.scale, met->normal,
                 feature_of(*met));

@@ -3,10 +3,13 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
 #include <utility>
 
+#include "base/frame.h"
 #include "base/parallel_for.h"
 #include "rounding/crease_grooves.h"
+#include "rounding/thin_walls.h"
 
 namespace arris {
 namespace {
@@ -27,11 +30,13 @@ constexpr double kBeneath = 1e-5;
 constexpr double kTolerances = 8;
 // Of the radius: a point this near to the sharp surface is on it.
 constexpr double kOnSurface = 1e-4;
-// Of a way that should lie in a void: how many radii beneath the surface it may not be, and where it is looked at.
-constexpr double kInMaterial = 0.02;
-constexpr std::array kPlacesOnWay{0.08, 0.25, 0.42, 0.58, 0.75, 0.92};
-// Places of an edge where it is seen whether it has a radius.
-constexpr int kEdgeSteps = 64;
+// Of a way that should lie in a void: how many radii beneath the surface it may not be, and by how many it is looked
+// at; and about a place where it meets material, what shows how this lies.
+constexpr double kInMaterial = 0.02, kWayAtOnce = 0.1, kBesides = 0.01;
+constexpr int kLeastSteps = 4, kMostSteps = 64;
+// Relative to the radius: steps in which edges are looked at, and how far below.
+constexpr double kEdgeStep = 0.25, kBeneathEdge = 1e-3;
+constexpr int kMostEdgeSteps = 256;
 // More functions than these cost more than asking the surface.
 constexpr std::size_t kMostDepths = 8;
 
@@ -99,6 +104,45 @@ class DepthBound {
   double r_;
 };
 
+// Where a ray comes to what stays, between two of its t.
+struct Border {
+  Vec3d x, direction;
+  double before, within;
+
+  template <class IsMaterial>
+  [[nodiscard]] double find(const IsMaterial& is_material) const {
+    constexpr int kHalvings = 24;
+    double low = before, high = within;
+    for (int i = 0; i < kHalvings; ++i) {
+      const double middle = 0.5 * (low + high);
+      (is_material(x + direction * middle) ? high : low) = middle;
+    }
+    return high;
+  }
+
+  // Of the plane through the places that two rays beside it come to; unit, against the ray.
+  template <class IsMaterial>
+  [[nodiscard]] Vec3d normal_at(double t, double beside, const IsMaterial& is_material) const {
+    const Vec3d d = normalize(direction), u(make_frame(Vec3f(d)).tangent), v = cross(d, u);
+    const auto place_beside = [&](Vec3d way) -> std::optional<Vec3d> {
+      for (const double side : {beside, -beside}) {
+        const double reach = kSteepest * beside / length(direction);
+        const Border near{x + way * side, direction, t - reach, t + reach};
+        const auto is_there = [&](double at) { return is_material(near.x + direction * at); };
+        if (is_there(near.before) || !is_there(near.within)) continue;
+        return (near.x + direction * near.find(is_material) - (x + direction * t)) / side;
+      }
+      return std::nullopt;
+    };
+    const std::optional<Vec3d> a = place_beside(u), b = place_beside(v);
+    if (!a || !b) return -d;
+    const Vec3d normal = normalize(cross(*a, *b));
+    return dot(normal, d) < 0 ? normal : -normal;
+  }
+
+  static constexpr double kSteepest = 5;
+};
+
 bool is_same(const DepthAtCorners& a, const DepthAtCorners& b, double tolerance) {
   return std::abs(a.d0 - b.d0) < tolerance && std::abs(a.d1 - b.d1) < tolerance &&
          std::abs(a.d2 - b.d2) < tolerance;
@@ -108,12 +152,48 @@ bool is_same(const DepthAtCorners& a, const DepthAtCorners& b, double tolerance)
 
 bool CreasedSolid::is_kept(Vec3d x, Vec3d normal, std::uint32_t region) const {
   const double r = field.at(x);
-  return r <= tolerance || !surface.is_blocked(x - normal * r, r - tolerance, region, x);
+  return r <= tolerance || !surface.is_near(x - normal * r, r - tolerance, region) ||
+         stays(x, normal, region, r);
+}
+
+bool CreasedSolid::stays(Vec3d x, Vec3d normal, std::uint32_t region, double r) const {
+  if (std::ranges::binary_search(firm, region)) return true;
+  const Vec3d center = x - normal * r, reach(r);
+  return surface.has_wall_near(center - reach, center + reach) &&
+         gets_stuck(surface, x, normal, region, r - tolerance);
 }
 
 VoidCrossing CreasedSolid::cross_void(Vec3d x, Vec3d direction) const {
-  const SolidSurface::Exit exit = surface.first_exit(x, direction, tolerance / length(direction));
-  return {pipes.first_entry(x, direction, exit.t), exit};
+  VoidCrossing crossing{{}, surface.first_exit(x, direction, tolerance / length(direction))};
+  crossing.met = pipes.first_entry(x, direction, crossing.exit.t);
+  if (const auto material = first_material(x, direction, crossing)) crossing.met = material;
+  return crossing;
+}
+
+std::optional<PipeHit> CreasedSolid::first_material(Vec3d x, Vec3d direction,
+                                                    const VoidCrossing& crossing) const {
+  const auto& [met, exit] = crossing;
+  const double end = met ? met->t : exit.t;
+  if (!std::isfinite(end)) return std::nullopt;
+  const Vec3d last = x + direction * end;
+  if (field.is_uniform() && firm.empty() && !surface.has_wall_near(min(x, last), max(x, last))) {
+    return std::nullopt;
+  }
+  const double speed = length(direction), most = kWayAtOnce * radius / speed;
+  const int steps = std::clamp(int(std::ceil(end / most)), kLeastSteps, kMostSteps);
+  const auto is_material = [&](Vec3d y) { return is_beneath(y, kInMaterial); };
+  for (int i = 1; i < steps; ++i) {
+    const double t = end * i / steps;
+    if (!is_material(x + direction * t)) continue;
+    const Border border{x, direction, end * (i - 1) / steps, t};
+    const double at = border.find(is_material);
+    // What is beneath the pipe, but for the tolerance.
+    if (met && (end - at) * speed <= kInMaterial * radius) return std::nullopt;
+    return PipeHit{at, border.normal_at(at, kBesides * radius, is_material), true};
+  }
+  // A skin, too thin to be found.
+  if (!met && is_kept(last, exit.normal, exit.region)) return PipeHit{end, -exit.normal, true};
+  return std::nullopt;
 }
 
 const CreaseShape& CreasedSolid::shape() const {
@@ -127,17 +207,29 @@ const CreaseShape& CreasedSolid::shape() const {
   return made_shape->shape;
 }
 
-std::vector<std::pair<double, double>> CreasedSolid::find_sharp_parts(std::uint32_t face,
-                                                                      std::uint32_t other, Vec3d p0,
-                                                                      Vec3d p1) const {
-  if (surface.is_thin(face, other)) return {{0, 1}};
+std::vector<std::pair<double, double>> CreasedSolid::find_sharp_parts(const FaceEdge& edge) const {
   std::vector<std::pair<double, double>> parts;
-  if (field.is_uniform()) return parts;
-  const auto is_sharp = [&](double u) { return field.at(p0 + (p1 - p0) * u) <= tolerance; };
-  bool was = is_sharp(0);
+  const bool is_firm = std::ranges::binary_search(firm, edge.region0) ||
+                       std::ranges::binary_search(firm, edge.region1);
+  if (is_firm) return {{0, 1}};
+  const Vec3d reach(radius);
+  const bool may_stay =
+      surface.has_wall_near(min(edge.p0, edge.p1) - reach, max(edge.p0, edge.p1) + reach);
+  if (field.is_uniform() && !may_stay) return parts;
+  const Vec3d down = normalize(edge.normal0 + edge.normal1) * kBeneathEdge;
+  const auto is_sharp = [&](double u) {
+    const Vec3d x = edge.p0 + (edge.p1 - edge.p0) * u;
+    const double r = field.at(x);
+    return r <= tolerance || (may_stay && surface.has_wall_near(x - reach, x + reach) &&
+                              gets_stuck(surface, x - down * r, r - tolerance));
+  };
+  const double extent = length(edge.p1 - edge.p0);
+  const int steps = std::clamp(int(std::ceil(extent / (kEdgeStep * radius))), 2, kMostEdgeSteps);
+  // Ends are corners, of other edges, too.
+  bool was = is_sharp(0.5 / steps);
   double from = 0;
-  for (int i = 1; i <= kEdgeSteps; ++i) {
-    double low = double(i - 1) / kEdgeSteps, high = double(i) / kEdgeSteps;
+  for (int i = 1; i < steps; ++i) {
+    double low = (i - 0.5) / steps, high = (i + 0.5) / steps;
     const bool now = is_sharp(high);
     for (int k = 0; now != was && k < 30; ++k) {
       const double middle = 0.5 * (low + high);
@@ -179,15 +271,8 @@ bool CreasedSolid::is_beneath(Vec3d x, double radii) const {
   const double r = region == kNone ? radius : field.at(foot);
   if (nearest < std::max(kOnSurface, radii) * radius || r <= tolerance) return false;
   const Vec3d center = foot + (x - foot) * (r / nearest);
-  return !surface.is_blocked(center, r - tolerance, region, foot);
-}
-
-bool CreasedSolid::is_through_material(Vec3d x, std::uint32_t region, Vec3d direction, double end,
-                                       std::uint32_t end_region) const {
-  if (!is_loose(region) && !is_loose(end_region)) return false;
-  return std::ranges::any_of(kPlacesOnWay, [&](double part) {
-    return is_beneath(x + direction * (part * end), kInMaterial);
-  });
+  return !surface.is_near(center, r - tolerance, region) ||
+         stays(foot, (foot - x) / nearest, region, r);
 }
 
 std::optional<EdgeBlend> CreasedSolid::blend_at(Vec3d x, Vec3d normal) const {

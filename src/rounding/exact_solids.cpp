@@ -78,7 +78,6 @@ class ExactMaker {
       made_.bands.insert(made_.bands.end(), made[i]->bands.begin(), made[i]->bands.end());
       for (const std::uint32_t s : wanted[i]) join(s, wanted[i].front(), made[i]->solid.radius);
       made_.clamped.insert(made_.clamped.end(), made[i]->clamped.begin(), made[i]->clamped.end());
-      made_.thin_walls += made[i]->thin_walls;
       data_.creased.push_back(std::make_unique<const CreasedSolid>(std::move(made[i]->solid)));
       plain_.push_back({wanted[i].front(), false, std::move(made[i]->plain)});
     }

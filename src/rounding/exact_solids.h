@@ -12,9 +12,9 @@
 #include "edges/flat_regions.h"
 #include "edges/welded_mesh.h"
 #include "rounding/bands.h"
+#include "rounding/make_creased.h"
 #include "rounding/outside_mesh.h"
 #include "rounding/rounding_data.h"
-#include "rounding/varied_creases.h"
 
 namespace arris {
 
@@ -31,9 +31,8 @@ struct ExactInput {
 
 struct MadeExact {
   std::vector<TriangleBand> bands;
-  std::vector<VariedCreases::Edge> clamped;
+  std::vector<ClampedPart> clamped;
   std::uint64_t filled_edges = 0;  // concave ones with fillets
-  std::uint64_t thin_walls = 0;    // pairs of faces
 };
 
 MadeExact make_exact_solids(const ExactInput& input, Rounding::Data& data);

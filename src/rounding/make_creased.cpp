@@ -7,12 +7,13 @@
 #include "base/parallel_collect.h"
 #include "rounding/creases.h"
 #include "rounding/smooth_reach.h"
+#include "rounding/thin_walls.h"
 
 namespace arris {
 namespace {
 
-// Triangles whose bands one thread finds at a time.
-constexpr std::size_t kTrianglesAtOnce = 256;
+// Triangles, and edges, that one thread looks at at a time.
+constexpr std::size_t kTrianglesAtOnce = 256, kEdgesAtOnce = 64;
 // Pairs of triangles within the radius that are too many on a curved surface; and how they are estimated.
 constexpr std::size_t kMostPairs = 8'000'000, kSampledTriangles = 256;
 // Relative to the radius: a place this near to a crease is of a rounded edge or corner.
@@ -62,47 +63,30 @@ class CreasedMaker {
 
   [[nodiscard]] std::optional<MadeCreased> make() const {
     if (has_smooth_edges_ && in_.is_outside) return std::nullopt;
+    // Such balls fit nowhere.
+    if (r_ > outer_.size()) return std::nullopt;
     SolidSurface surface = make_surface();
     if (has_smooth_edges_ && is_too_fine(surface)) return std::nullopt;
     const std::vector<FacePair> sharp = join_smooth_faces(surface);
+    if (!in_.is_outside) surface.set_walls(find_thin_walls({surface, sharp, in_.regions, r_}));
     VariedCreases found = find(surface);
-    std::vector<CreaseCurve>& creases = found.curves;
-    if (creases.empty()) return std::nullopt;
-    // Fillets are all or none: the space outside has no faces to keep beside them.
-    if (in_.is_outside && !found.missing.empty()) return std::nullopt;
-    std::vector<FacePair> thin;
-    if (!in_.is_outside) thin = find_thin_walls({surface, {}, sharp, in_.regions, r_});
-    const std::uint64_t thin_walls = thin.size() / 2;
-    // Edges that stay sharp end thin walls, too.
-    for (const auto& [a, b] : found.missing) thin.insert(thin.end(), {{a, b}, {b, a}});
-    sort_pairs(thin);
-    surface.set_thin(thin);
-    const std::vector<FacePair> hidden = pairs_that_hide_faces(surface, creases);
-    if (!hidden.empty()) {
-      if (in_.is_outside) return std::nullopt;
-      thin.insert(thin.end(), hidden.begin(), hidden.end());
-      sort_pairs(thin);
-      surface.set_thin(thin);
-    }
-    std::vector<std::uint32_t> loose;
-    for (const FacePair& pair : thin) loose.push_back(pair.first);
-    // The field knows the nearest edge alone: where edges turn by different angles, it may miss a rounding's end.
-    if (!found.field.is_uniform()) {
-      for (const SurfaceTriangle& t : surface.triangles()) loose.push_back(t.region);
-      std::ranges::sort(loose);
-    }
-    loose.erase(std::unique(loose.begin(), loose.end()), loose.end());
+    if (found.curves.empty()) return std::nullopt;
     std::vector<TriangleBand> bands = parallel_collect<TriangleBand>(
         triangles_.size(), kTrianglesAtOnce,
         [&](std::size_t i, auto& list) { append_bands(surface, triangles_[i], list); });
-    const double tolerance = crease_tolerance(outer_.size(), r_);
-    CreasedSolid solid{
-        std::move(surface), CreasePipes(std::move(creases)), std::move(found.field), r_, tolerance,
-        std::move(loose)};
+    CreasedSolid solid{std::move(surface),
+                       CreasePipes(std::move(found.curves)),
+                       std::move(found.field),
+                       r_,
+                       crease_tolerance(outer_.size(), r_),
+                       {}};
+    solid.firm = faces_that_vanish(solid);
+    if (in_.is_outside && !solid.firm.empty()) return std::nullopt;
     std::vector<PlainCrease> plain = find_plain_creases(solid, in_.regions.planes);
-    for (const std::uint32_t h : edges_between(found.missing)) found.smaller.push_back({h, 0});
-    return MadeCreased{std::move(solid), std::move(bands), std::move(found.smaller),
-                       std::move(plain), thin_walls};
+    std::vector<ClampedPart> clamped;
+    for (const VariedCreases::Edge& e : found.smaller) clamped.push_back({e.half_edge, e.radius});
+    append_sharp_parts(solid, clamped);
+    return MadeCreased{std::move(solid), std::move(bands), std::move(clamped), std::move(plain)};
   }
 
  private:
@@ -112,11 +96,13 @@ class CreasedMaker {
     const bool clamp = in_.on_overlap == OnOverlap::clamp && !in_.is_outside;
     if (has_own_radii_) return find_varied_creases({input, in_.radii, clamp});
     FoundCreases found = find_creases(input);
+    // Fillets are all or none: the space outside has no faces to keep beside them.
+    if (in_.is_outside && !found.missing.empty()) return {};
     if (clamp && !found.missing.empty()) {
       const std::vector<double> radii(in_.kinds.size(), r_);
       return find_varied_creases({input, radii, clamp});
     }
-    return {std::move(found.curves), RadiusField(r_), {}, std::move(found.missing)};
+    return {std::move(found.curves), RadiusField(r_), {}};
   }
 
   [[nodiscard]] SolidSurface make_surface() const {
@@ -152,20 +138,43 @@ class CreasedMaker {
   void for_edges(const Visit& visit) const {
     for (const std::uint32_t t : triangles_) {
       for (std::uint32_t h = 3 * t; h < 3 * t + 3; ++h) {
-        visit(h, FacePair(in_.regions.region[t], in_.regions.region[in_.welded.twin[h] / 3]));
+        visit(h, faces_at(h));
       }
     }
   }
 
-  [[nodiscard]] std::vector<std::uint32_t> edges_between(std::span<const FacePair> pairs) const {
-    std::vector<std::uint32_t> edges;
-    if (pairs.empty()) return edges;
-    for_edges([&](std::uint32_t h, FacePair faces) {
-      if (in_.kinds[h] != EdgeKind::convex || h > in_.welded.twin[h]) return;
-      if (std::ranges::binary_search(pairs, FacePair(std::minmax(faces.first, faces.second))))
-        edges.push_back(h);
+  // Of edges that have no room for the radius, and are not yet among what is clamped.
+  void append_sharp_parts(const CreasedSolid& solid, std::vector<ClampedPart>& clamped) const {
+    if (!solid.surface.has_walls() && solid.firm.empty()) return;
+    std::vector<std::uint32_t> known, edges;
+    for (const ClampedPart& part : clamped) {
+      if (part.radius == 0) known.push_back(part.half_edge);
+    }
+    std::ranges::sort(known);
+    for_edges([&](std::uint32_t h, FacePair) {
+      const bool is_rounded = in_.radii.empty() || in_.radii[h] > 0;
+      if (in_.kinds[h] != EdgeKind::convex || h > in_.welded.twin[h] || !is_rounded) return;
+      if (!std::ranges::binary_search(known, h)) edges.push_back(h);
     });
-    return edges;
+    const std::vector<ClampedPart> parts =
+        parallel_collect<ClampedPart>(edges.size(), kEdgesAtOnce, [&](std::size_t i, auto& list) {
+          const std::uint32_t h = edges[i];
+          const auto [face, other] = faces_at(h);
+          const auto at = [&](std::uint32_t v) { return Vec3d(in_.welded.vertices[v]) - center_; };
+          const FaceEdge edge{at(in_.welded.origin(h)),
+                              at(in_.welded.target(h)),
+                              in_.regions.planes[face].normal,
+                              in_.regions.planes[other].normal,
+                              face,
+                              other};
+          for (const auto& [from, to] : solid.find_sharp_parts(edge))
+            list.push_back({h, 0, from, to});
+        });
+    clamped.insert(clamped.end(), parts.begin(), parts.end());
+  }
+
+  [[nodiscard]] FacePair faces_at(std::uint32_t h) const {
+    return {in_.regions.region[h / 3], in_.regions.region[in_.welded.twin[h] / 3]};
   }
 
   // Facets by far smaller than the radius cost the square of their number.
@@ -187,10 +196,9 @@ class CreasedMaker {
     pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
   }
 
-  // No face vanishes that walls too near have taken away: each is kept somewhere, or has a crease, or one near. Comes
-  // out: the others and what is too near to them, each pair in both orders.
-  [[nodiscard]] std::vector<FacePair> pairs_that_hide_faces(
-      const SolidSurface& surface, std::span<const CreaseCurve> creases) const {
+  // Faces of which nothing is kept, and that have no crease, nor one near: walls too near have taken them away.
+  [[nodiscard]] std::vector<std::uint32_t> faces_that_vanish(const CreasedSolid& solid) const {
+    const std::span<const CreaseCurve> creases = solid.pipes.creases();
     std::vector<std::uint32_t> rounded;
     for (const CreaseCurve& c : creases) rounded.insert(rounded.end(), {c.face_a, c.face_b});
     std::ranges::sort(rounded);
@@ -203,21 +211,16 @@ class CreasedMaker {
       });
       return found;
     };
-    const double least = r_ - crease_tolerance(outer_.size(), r_);
-    std::vector<FacePair> pairs;
-    for (const SurfaceTriangle& t : surface.triangles()) {
+    std::vector<std::uint32_t> faces;
+    for (const SurfaceTriangle& t : solid.surface.triangles()) {
       if (std::ranges::binary_search(rounded, t.region)) continue;
       const Vec3d middle = (t.p0 + t.p1 + t.p2) / 3.0;
-      const Vec3d c = middle - in_.regions.planes[t.region].normal * r_;
-      if (!surface.is_blocked(c, least, t.region, middle) || is_at_crease(middle)) continue;
-      surface.for_each_near(c - Vec3d(least), c + Vec3d(least), [&](const SurfaceTriangle& other) {
-        if (other.region == t.region || surface.is_joined(t.region, other.region)) return;
-        if (length(c - nearest_on_triangle(c, other)) >= least) return;
-        pairs.emplace_back(t.region, other.region);
-        pairs.emplace_back(other.region, t.region);
-      });
+      if (solid.is_kept(middle, in_.regions.planes[t.region].normal, t.region)) continue;
+      if (!is_at_crease(middle)) faces.push_back(t.region);
     }
-    return pairs;
+    std::ranges::sort(faces);
+    faces.erase(std::unique(faces.begin(), faces.end()), faces.end());
+    return faces;
   }
 
   [[nodiscard]] BoxTree tree_of(std::span<const CreaseCurve> creases) const {

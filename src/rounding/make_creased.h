@@ -29,13 +29,18 @@ struct CreasedInput {
   bool is_outside = false;          // of the space outside (outside_mesh.h): flat faces alone
 };
 
+// A part of an edge that has a smaller radius than it should, or stays sharp: there is no room.
+struct ClampedPart {
+  std::uint32_t half_edge;
+  double radius;
+  double from = 0, to = 1;  // fractions of it
+};
+
 struct MadeCreased {
   CreasedSolid solid;
   std::vector<TriangleBand> bands;
-  // Half-edges, one of each pair, whose edges have a smaller radius than they should, or stay sharp: there is no room.
-  std::vector<VariedCreases::Edge> clamped;
+  std::vector<ClampedPart> clamped;
   std::vector<PlainCrease> plain;
-  std::uint64_t thin_walls = 0;  // pairs of faces
 };
 
 // shells: the outside of one solid, then its hollows. Nothing: something about them is open, no edge has room, or

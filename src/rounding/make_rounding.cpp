@@ -205,7 +205,7 @@ class RoundingMaker {
     } else {
       shortened_ += network.shortened_edges;
       narrow_ += network.narrow_edges;
-      for (const std::uint32_t h : network.left_sharp) add_clamped(h, 0);
+      for (const std::uint32_t h : network.left_sharp) add_clamped({h, 0});
       const BandInput input{mesh_, welded_, regions_, triangle_begin_, triangles_, options_.radius};
       append_bands(input, network, solid, solid.first_arc, bands_);
     }
@@ -224,16 +224,22 @@ class RoundingMaker {
                           *data_);
     bands_ = std::move(made.bands);
     filled_edges_ = made.filled_edges;
-    thin_walls_ = made.thin_walls;
-    for (const VariedCreases::Edge& e : made.clamped) {
-      add_clamped(e.half_edge, e.radius);
-      ++(e.radius > 0 ? clamped_ : left_in_creased_);
+    for (const ClampedPart& e : made.clamped) {
+      add_clamped(e);
+      if (e.radius > 0) {
+        ++clamped_;
+      } else if (e.from == 0 && e.to == 1) {
+        ++left_in_creased_;
+      } else {
+        ++sharp_in_part_;
+      }
     }
   }
 
-  void add_clamped(std::uint32_t half_edge, double radius) {
-    data_->report.clamped.push_back({Vec3d(welded_.vertices[welded_.origin(half_edge)]),
-                                     Vec3d(welded_.vertices[welded_.target(half_edge)]), radius});
+  void add_clamped(const ClampedPart& part) {
+    const Vec3d p(welded_.vertices[welded_.origin(part.half_edge)]);
+    const Vec3d along = Vec3d(welded_.vertices[welded_.target(part.half_edge)]) - p;
+    data_->report.clamped.push_back({p + along * part.from, p + along * part.to, part.radius});
   }
 
   // Edges without a radius stay sharp everywhere; the others of what isn't a creased solid have the options' radius.
@@ -453,8 +459,9 @@ class RoundingMaker {
     note(narrow_ + left_in_creased_,
          "edge stays sharp: the radius is too large for the faces beside it",
          "edges stay sharp: the radius is too large for the faces beside them");
-    note(thin_walls_, "wall is thinner than twice the radius: its faces stay",
-         "walls are thinner than twice the radius: their faces stay");
+    note(sharp_in_part_,
+         "part of an edge stays sharp: the radius is too large for the faces beside it",
+         "parts of edges stay sharp: the radius is too large for the faces beside them");
     note(clamped_, "edge has a smaller radius: its own is too large for what lies beside it",
          "edges have a smaller radius: their own is too large for what lies beside them");
     note(sharp_by_rule_, "edge stays sharp: its radius is 0",
@@ -498,8 +505,8 @@ class RoundingMaker {
   bool keep_networks_ = false;
   std::vector<ShellNetwork> networks_;
   std::uint64_t cavities_ = 0, shortened_ = 0, narrow_ = 0, too_small_ = 0, unasked_ = 0;
-  std::uint64_t filled_edges_ = 0, left_in_creased_ = 0;
-  std::uint64_t thin_walls_ = 0, clamped_ = 0, sharp_by_rule_ = 0, rules_ignored_ = 0;
+  std::uint64_t filled_edges_ = 0, left_in_creased_ = 0, sharp_in_part_ = 0;
+  std::uint64_t clamped_ = 0, sharp_by_rule_ = 0, rules_ignored_ = 0;
 };
 
 }  // namespace

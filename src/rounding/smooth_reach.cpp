@@ -10,11 +10,7 @@ namespace {
 
 // Cosine of the turn beyond which a ball in one face's place does not belong to the other's surface.
 constexpr double kMostTurn = -0.5;
-constexpr std::size_t kFacesAtOnce = 64, kTrianglesAtOnce = 256;
-// Cosine between the normals of a wall's two sides, at most.
-constexpr double kOpposite = -0.8;
-// Relative to the radius: what is no nearer than this short of it only touches.
-constexpr double kTouching = 1e-6;
+constexpr std::size_t kFacesAtOnce = 64;
 
 // Of sorted pairs, those whose first is the face.
 std::span<const FacePair> pairs_of(std::span<const FacePair> sorted, std::uint32_t face) {
@@ -34,16 +30,6 @@ class ReachFinder {
     for (const auto& [face, other] : in_.smooth) {
       if (curved_.empty() || curved_.back() != face) curved_.push_back(face);
     }
-  }
-
-  [[nodiscard]] std::vector<FacePair> thin_walls() const {
-    const std::span<const SurfaceTriangle> triangles = in_.surface.triangles();
-    std::vector<FacePair> pairs = parallel_collect<FacePair>(
-        triangles.size(), kTrianglesAtOnce,
-        [&](std::size_t i, std::vector<FacePair>& list) { add_thin_walls(triangles[i], list); });
-    std::ranges::sort(pairs);
-    pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
-    return pairs;
   }
 
   [[nodiscard]] std::vector<FacePair> run() const {
@@ -72,51 +58,17 @@ class ReachFinder {
     }
   }
 
-  void add_thin_walls(const SurfaceTriangle& own, std::vector<FacePair>& list) const {
-    const Vec3d normal = normal_of(own.region), down = normal * in_.radius, reach(in_.radius);
-    const std::array<Vec3d, 3> offset{own.p0 - down, own.p1 - down, own.p2 - down};
-    const Vec3d low = min(offset[0], min(offset[1], offset[2])) - reach;
-    const Vec3d high = max(offset[0], max(offset[1], offset[2])) + reach;
-    const std::size_t first = list.size();
-    in_.surface.for_each_near(low, high, [&](const SurfaceTriangle& t) {
-      if (t.region == own.region || dot(normal, normal_of(t.region)) > kOpposite) return;
-      if (!cuts_into(offset, normal, t)) return;
-      const FacePair pair(own.region, t.region);
-      if (std::ranges::binary_search(in_.sharp, pair)) return;
-      if (std::find(list.begin() + std::ptrdiff_t(first), list.end(), pair) != list.end()) return;
-      list.push_back(pair);
-      list.emplace_back(t.region, own.region);
-    });
-  }
-
-  // Whether a triangle may be nearer than r to the centres of balls that touch one of this normal.
-  [[nodiscard]] bool cuts_into(const std::array<Vec3d, 3>& offset, Vec3d normal,
-                               const SurfaceTriangle& t) const {
-    const double reach = (1 - kTouching) * in_.radius;
-    if (is_beyond_reach(offset, normal, t, reach)) return false;
-    // All of t lies behind the plane through its point that is nearest to a centre.
-    const Vec3d middle = (offset[0] + offset[1] + offset[2]) / 3.0;
-    const Vec3d foot = nearest_on_triangle(middle, t), away = middle - foot;
-    const double limit = reach * length(away);
-    return std::ranges::any_of(offset, [&](Vec3d c) { return dot(c - foot, away) < limit; });
-  }
   [[nodiscard]] Vec3d normal_of(std::uint32_t face) const {
     return in_.regions.planes[face].normal;
   }
 
   // Faces into which balls may cut that touch this one.
   [[nodiscard]] std::vector<std::uint32_t> faces_near(std::uint32_t face) const {
-    const Vec3d normal = normal_of(face), reach(in_.radius);
+    const Vec3d normal = normal_of(face);
     std::vector<std::uint32_t> near;
     for (const FacePair& pair : pairs_of(by_region_, face)) {
-      const SurfaceTriangle& own = in_.surface.triangles()[pair.second];
-      const Vec3d down = normal * in_.radius;
-      const std::array<Vec3d, 3> offset{own.p0 - down, own.p1 - down, own.p2 - down};
-      const Vec3d low = min(offset[0], min(offset[1], offset[2])) - reach;
-      const Vec3d high = max(offset[0], max(offset[1], offset[2])) + reach;
-      in_.surface.for_each_near(low, high, [&](const SurfaceTriangle& t) {
-        if (t.region != face && cuts_into(offset, normal, t)) near.push_back(t.region);
-      });
+      in_.surface.for_each_cut(pair.second, normal, in_.radius,
+                               [&](const SurfaceTriangle& t) { near.push_back(t.region); });
     }
     std::ranges::sort(near);
     near.erase(std::unique(near.begin(), near.end()), near.end());
@@ -132,10 +84,6 @@ class ReachFinder {
 
 std::vector<FacePair> find_smooth_reach(const SmoothReachInput& input) {
   return ReachFinder(input).run();
-}
-
-std::vector<FacePair> find_thin_walls(const SmoothReachInput& input) {
-  return ReachFinder(input).thin_walls();
 }
 
 }  // namespace arris

@@ -1,8 +1,7 @@
-// smooth_reach.h — faces that are one curved surface, or one thin wall, as far as a ball goes
+// smooth_reach.h — faces that are one curved surface as far as a ball goes
 // What       Facets of a curved surface stand for what is between them: a ball that touches one of them may cut into
 //            its neighbours where they meet in a smooth convex edge, by as much as facets are off the surface. For each
 //            face: those that can be reached from it over smooth edges by way of faces that a ball may cut into.
-//            And faces with so little material between them that balls which touch one would take the other away.
 // Limits     no faces that meet it in a sharp edge elsewhere, and none that have turned by more than kMostTurn
 // Cost       linear in the pairs of triangles within 2 r of each other; on all cores
 #pragma once
@@ -28,9 +27,5 @@ struct SmoothReachInput {
 
 // Sorted: a face, and one that its balls may cut into.
 std::vector<FacePair> find_smooth_reach(const SmoothReachInput& input);
-
-// Sorted, each pair in both orders: faces about opposite to each other with less than two radii of material between
-// them, but for those that meet in a sharp edge.
-std::vector<FacePair> find_thin_walls(const SmoothReachInput& input);
 
 }  // namespace arris

@@ -20,8 +20,8 @@ std::vector<Box> boxes_of(const std::vector<SurfaceTriangle>& triangles, double 
   return boxes;
 }
 
-// Relative to the radius: what is no farther below a plane than this is on it.
-constexpr double kOnPlane = 1e-4;
+// Relative to the radius: what is no nearer than this short of it only touches.
+constexpr double kTouching = 1e-6;
 
 // On which side of the line a→b the ray passes; the exact negative for b→a, so that no ray slips between triangles.
 double side_of(Vec3d origin, Vec3d direction, Vec3d a, Vec3d b) {
@@ -68,6 +68,17 @@ bool is_beyond_reach(const std::array<Vec3d, 3>& corners, Vec3d normal, const Su
   return is_beyond(over_t(corners[0]), over_t(corners[1]), over_t(corners[2]), reach * length(n));
 }
 
+bool may_be_cut(const std::array<Vec3d, 3>& centers, Vec3d normal, const SurfaceTriangle& t,
+                double radius) {
+  const double reach = (1 - kTouching) * radius;
+  if (is_beyond_reach(centers, normal, t, reach)) return false;
+  // All of t lies behind the plane through its point that is nearest to a centre.
+  const Vec3d middle = (centers[0] + centers[1] + centers[2]) / 3.0;
+  const Vec3d foot = nearest_on_triangle(middle, t), away = middle - foot;
+  const double limit = reach * length(away);
+  return std::ranges::any_of(centers, [&](Vec3d c) { return dot(c - foot, away) < limit; });
+}
+
 SolidSurface::SolidSurface(std::vector<SurfaceTriangle> triangles, double reach)
     : triangles_(std::move(triangles)), tree_(boxes_of(triangles_, reach)) {}
 
@@ -82,40 +93,22 @@ bool SolidSurface::is_near(Vec3d x, double distance, std::uint32_t but_region) c
   return found;
 }
 
-bool SolidSurface::is_blocked(Vec3d center, double radius, std::uint32_t face,
-                              Vec3d touching) const {
-  if (!is_near(center, radius, face)) return false;
-  const auto first_thin = std::ranges::lower_bound(thin_, face, {}, &FacePair::first);
-  if (first_thin == thin_.end() || first_thin->first != face) return true;
-  std::vector<const SurfaceTriangle*> far_sides;
-  std::vector<Vec3d> near;
-  for_each_near(center - Vec3d(radius), center + Vec3d(radius), [&](const SurfaceTriangle& t) {
-    if (t.region == face || is_joined(face, t.region)) return;
-    const Vec3d p = nearest_on_triangle(center, t);
-    if (!(length_squared(center - p) < radius * radius)) return;
-    if (is_thin(face, t.region)) {
-      far_sides.push_back(&t);
-    } else {
-      near.push_back(p);
-    }
-  });
-  // Whether the way from where the ball touches leads through a far side.
-  const double slack = kOnPlane * radius;
-  const auto is_beyond = [&](Vec3d p) {
-    return std::ranges::any_of(far_sides, [&](const SurfaceTriangle* t) {
-      const Vec3d normal = normalize(cross(t->p1 - t->p0, t->p2 - t->p0));
-      const double from = dot(normal, touching - t->p0), to = dot(normal, p - t->p0);
-      if (from > slack || to < -slack) return false;
-      const double part = from < to ? std::clamp(from / (from - to), 0.0, 1.0) : 1;
-      const Vec3d crossing = touching + (p - touching) * part;
-      return length(crossing - nearest_on_triangle(crossing, *t)) <= 10 * slack;
-    });
-  };
-  return !std::ranges::all_of(near, is_beyond);
+void SolidSurface::set_walls(ThinWalls walls) {
+  blades_ = std::move(walls.blades);
+  is_wall_.assign(walls.sides.empty() ? 0 : triangles_.size(), false);
+  for (const std::uint32_t t : walls.sides) is_wall_[t] = true;
+}
+
+bool SolidSurface::has_wall_near(Vec3d low, Vec3d high) const {
+  bool found = false;
+  if (has_walls()) {
+    tree_.for_each_near(low, high, [&](std::uint32_t i) { found = found || is_wall_[i]; });
+  }
+  return found;
 }
 
 SolidSurface::Exit SolidSurface::first_exit(Vec3d origin, Vec3d direction, double after) const {
-  Exit exit{std::numeric_limits<double>::infinity(), kNone};
+  Exit exit{std::numeric_limits<double>::infinity(), kNone, {}};
   tree_.for_each_along(origin, direction, after, exit.t, [&](std::uint32_t i) {
     const SurfaceTriangle& t = triangles_[i];
     const Vec3d normal = cross(t.p1 - t.p0, t.p2 - t.p0);
@@ -129,14 +122,15 @@ SolidSurface::Exit SolidSurface::first_exit(Vec3d origin, Vec3d direction, doubl
     const double w2 = side_of(origin, direction, t.p0, t.p1);
     if (w0 < 0 || w1 < 0 || w2 < 0) return;
     const double at = ahead / across;
-    if (at > after && at < exit.t) exit = {at, t.region};
+    if (at > after && at < exit.t) exit = {at, t.region, normal};
   });
+  if (exit.region != kNone) exit.normal = normalize(exit.normal);
   return exit;
 }
 
 std::size_t SolidSurface::bytes() const {
   return triangles_.size() * sizeof(SurfaceTriangle) +
-         (joined_.size() + thin_.size()) * sizeof(FacePair) + tree_.bytes();
+         (joined_.size() + blades_.size()) * sizeof(FacePair) + is_wall_.size() / 8 + tree_.bytes();
 }
 
 }  // namespace arris

@@ -32,8 +32,19 @@ inline bool is_plainly_beyond(Vec3d x, const SurfaceTriangle& t, double distance
 // Whether it is seen at once that a triangle, of the given normal, is `reach` or more from another one.
 bool is_beyond_reach(const std::array<Vec3d, 3>& corners, Vec3d normal, const SurfaceTriangle& t,
                      double reach);
+// Whether a triangle may be nearer than r to the centres of balls that touch one; these are its corners, moved inwards
+// along its normal.
+bool may_be_cut(const std::array<Vec3d, 3>& centers, Vec3d normal, const SurfaceTriangle& t,
+                double radius);
 
 using FacePair = std::pair<std::uint32_t, std::uint32_t>;  // regions
+
+// What has less than two radii of material between its sides.
+struct ThinWalls {
+  std::vector<std::uint32_t> sides;  // triangles, by their place in the surface; sorted
+  // Faces that meet in an edge as sharp as that: no walls. Each pair in both orders; sorted.
+  std::vector<FacePair> blades;
+};
 
 class SolidSurface {
  public:
@@ -42,29 +53,28 @@ class SolidSurface {
 
   // joined: see smooth_reach.h
   void set_joined(std::vector<FacePair> joined) { joined_ = std::move(joined); }
-  // thin: faces with less than two radii of material between them, or with an edge that stays sharp, each pair in both
-  // orders; sorted. What touches one may cut into the other, and into what lies beyond that.
-  void set_thin(std::vector<FacePair> thin) { thin_ = std::move(thin); }
+  void set_walls(ThinWalls walls);
   // Whether what touches a face may cut into another one.
   [[nodiscard]] bool is_joined(std::uint32_t face, std::uint32_t other) const {
     return !joined_.empty() && std::ranges::binary_search(joined_, FacePair(face, other));
   }
   [[nodiscard]] bool is_curved() const { return !joined_.empty(); }
-  [[nodiscard]] bool is_thin(std::uint32_t face, std::uint32_t other) const {
-    return !thin_.empty() && std::ranges::binary_search(thin_, FacePair(face, other));
+  [[nodiscard]] bool is_blade(std::uint32_t face, std::uint32_t other) const {
+    return std::ranges::binary_search(blades_, FacePair(face, other));
   }
+  [[nodiscard]] bool has_walls() const { return !is_wall_.empty(); }
 
   // Whether a triangle of another region, one that isn't joined to it, is nearer to x than `distance`.
   [[nodiscard]] bool is_near(Vec3d x, double distance, std::uint32_t but_region) const;
-  // Whether something is in the way of a ball that touches a face at a place: the same, but for what is thin.
-  [[nodiscard]] bool is_blocked(Vec3d center, double radius, std::uint32_t face,
-                                Vec3d touching) const;
+  // Whether a side of a thin wall reaches into a box.
+  [[nodiscard]] bool has_wall_near(Vec3d low, Vec3d high) const;
 
-  // The t > after at which the ray first leaves through a triangle, and its region; infinity if it doesn't. A ray
-  // through an edge meets both triangles.
+  // The t > after at which the ray first leaves through a triangle, with its region and unit normal; infinity if it
+  // doesn't. A ray through an edge meets both triangles.
   struct Exit {
     double t;
     std::uint32_t region;
+    Vec3d normal;
   };
   [[nodiscard]] Exit first_exit(Vec3d origin, Vec3d direction, double after) const;
 
@@ -73,13 +83,31 @@ class SolidSurface {
   void for_each_near(Vec3d low, Vec3d high, Visit&& visit) const {
     tree_.for_each_near(low, high, [&](std::uint32_t i) { visit(triangles_[i]); });
   }
+  // Visits those of other regions into which a ball may cut that touches a triangle, of the given normal; some more
+  // than once.
+  template <class Visit>
+  void for_each_cut(std::uint32_t triangle, Vec3d normal, double radius, Visit&& visit) const;
   [[nodiscard]] const std::vector<SurfaceTriangle>& triangles() const { return triangles_; }
   [[nodiscard]] std::size_t bytes() const;
 
  private:
   std::vector<SurfaceTriangle> triangles_;
-  std::vector<FacePair> joined_, thin_;  // sorted
+  std::vector<FacePair> joined_, blades_;  // sorted
+  std::vector<bool> is_wall_;              // by triangle; empty: none is
   BoxTree tree_;
 };
+
+template <class Visit>
+void SolidSurface::for_each_cut(std::uint32_t triangle, Vec3d normal, double radius,
+                                Visit&& visit) const {
+  const SurfaceTriangle& own = triangles_[triangle];
+  const Vec3d down = normal * radius, reach(radius);
+  const std::array<Vec3d, 3> centers{own.p0 - down, own.p1 - down, own.p2 - down};
+  const Vec3d low = min(centers[0], min(centers[1], centers[2])) - reach;
+  const Vec3d high = max(centers[0], max(centers[1], centers[2])) + reach;
+  for_each_near(low, high, [&](const SurfaceTriangle& t) {
+    if (t.region != own.region && may_be_cut(centers, normal, t, radius)) visit(t);
+  });
+}
 
 }  // namespace arris

@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "base/parallel_collect.h"
+#include "rounding/thin_walls.h"
 
 namespace arris {
 namespace {
@@ -23,6 +24,8 @@ constexpr double kTransition = 2;
 constexpr double kMargin = 0.25;
 // A radius is halved so often where there is no room.
 constexpr int kHalvings = 3;
+// Of the radius: a ball this small begins to grow at an edge.
+constexpr double kBeneathEdge = 1e-3;
 // In radii: steps in which a curve is looked at; and most of them.
 constexpr double kStep = 0.25;
 constexpr int kMostSteps = 2000;
@@ -52,19 +55,15 @@ class VariedFinder {
       settle();
       make_field();
     } while (lower_hidden());
-    const std::set<double> used = used_radii();
-    for (const auto& [radius, found] : classes_) {
-      if (used.contains(radius)) add_class(radius, found.creases.curves);
+    for (const double radius : used_radii()) {
+      if (radius > 0) add_class(radius, class_of(radius).creases.curves);
     }
     for (std::size_t i = 0; i < edges_.size(); ++i) {
       if (profiles_[i].knots.size() > 2) add_transitions(edges_[i], profiles_[i]);
     }
     for (const Edge& e : edges_) {
       if (e.radius < e.asked) out_.smaller.push_back({e.half_edge, e.radius});
-      if (e.is_missing) out_.missing.push_back(e.faces);
     }
-    std::ranges::sort(out_.missing);
-    out_.missing.erase(std::unique(out_.missing.begin(), out_.missing.end()), out_.missing.end());
     return std::move(out_);
   }
 
@@ -75,7 +74,6 @@ class VariedFinder {
     Vec3d p0, direction;
     double length;
     double asked, radius;
-    bool is_missing = false;
   };
   struct Class {
     FoundCreases creases;
@@ -199,13 +197,18 @@ class VariedFinder {
     return corners_.at(e.vertex0) == e.radius && corners_.at(e.vertex1) == e.radius;
   }
 
-  // Whether the edge's radius and its transitions have room; an edge of one radius that has none is missing.
-  [[nodiscard]] bool fits(Edge& e) {
-    e.is_missing = false;
+  // Of an edge of one radius: it stays sharp.
+  [[nodiscard]] bool has_no_room(const Edge& e) {
+    if (!std::ranges::binary_search(class_of(e.radius).creases.missing, e.faces)) return false;
+    const RadiusKnot middle{0.5 * e.length, kBeneathEdge * e.radius};
+    return gets_stuck(in_.surface, center_at(e, middle), e.radius);
+  }
+
+  // Whether the edge's radius and its transitions have room.
+  [[nodiscard]] bool fits(const Edge& e) {
     if (is_even(e)) {
       if (e.radius == 0) return true;
-      e.is_missing = std::ranges::binary_search(class_of(e.radius).creases.missing, e.faces);
-      return !(e.is_missing && clamp_);
+      return !(clamp_ && has_no_room(e));
     }
     const std::optional<Ends> ends = ends_of(e);
     if (!ends) return false;

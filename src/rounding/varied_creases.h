@@ -32,8 +32,7 @@ struct VariedCreases {
   };
   std::vector<CreaseCurve> curves;
   RadiusField field{0};
-  std::vector<Edge> smaller;      // have a smaller radius than they should
-  std::vector<FacePair> missing;  // as in FoundCreases
+  std::vector<Edge> smaller;  // have a smaller radius than they should
 };
 
 VariedCreases find_varied_creases(const VariedInput& input);

@@ -1,0 +1,177 @@
+#include "rounding/thin_walls.h"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "base/parallel_collect.h"
+
+namespace arris {
+namespace {
+
+// Relative to its radius: what is nearer than this to the ball it touches; the same where it seems stuck; and how far
+// from its centre other things are looked for.
+constexpr double kTouching = 1.0 / 128, kFinelyTouching = 1e-5, kFar = 2;
+// Cosine of how much faces, or directions to them, turn at least that are opposite: by 143 degrees. A ball between them
+// grows by less than a third of its centre's way.
+constexpr double kOpposite = -0.8;
+// By the way of its centre: slower than this it grows nowhere.
+constexpr double kStuck = 0.05;
+// First radii are halved so often where there is no room.
+constexpr int kHalvings = 10;
+constexpr int kMostSteps = 400;
+constexpr std::size_t kTrianglesAtOnce = 256;
+
+// Where a ball touches the surface, or nearly.
+struct Contact {
+  Vec3d direction;  // from its centre, unit
+  double distance;
+  const SurfaceTriangle* triangle;
+  Vec3d normal;  // of the triangle
+};
+
+// Whether these are the two sides of a wall, or the rims of two.
+bool are_opposite(const Contact& a, const Contact& b) {
+  return dot(a.normal, b.normal) < kOpposite || dot(a.direction, b.direction) < kOpposite;
+}
+
+// The point nearest to the origin of the hull of unit vectors, nearly. E. G. Gilbert, "An iterative procedure for
+// computing the minimum of a quadratic form on a convex set" (1966).
+Vec3d nearest_of_hull(const std::vector<Contact>& contacts) {
+  constexpr int kRounds = 64;
+  constexpr double kNear = 0.02;
+  Vec3d nearest = contacts.front().direction;
+  for (int i = 0; i < kRounds; ++i) {
+    const auto along = [&](const Contact& c) { return dot(c.direction, nearest); };
+    const Vec3d support = std::ranges::min_element(contacts, {}, along)->direction;
+    const Vec3d way = support - nearest;
+    const double gain = -dot(way, nearest), squared = length_squared(nearest);
+    if (gain <= kNear * squared || squared < kStuck * kStuck) break;
+    nearest += way * std::min(gain / length_squared(way), 1.0);
+  }
+  return nearest;
+}
+
+class GrowingBall {
+ public:
+  GrowingBall(const SolidSurface& surface, Vec3d center, double radius)
+      : surface_(surface), center_(center), full_(radius) {}
+
+  bool gets_stuck() {
+    find_near(full_);
+    for (int i = 0; i < kMostSteps && radius_ < full_; ++i) {
+      take_contacts(kTouching);
+      if (is_stuck()) take_contacts(kFinelyTouching);
+      if (is_stuck()) return true;
+      const double speed = length(middle_);
+      const double step = std::max(way_until_touch(speed), 0.5 * touching_ * radius_);
+      center_ -= middle_ * (step / speed);
+      find_near(kFar * (radius_ + step));
+    }
+    return radius_ < full_;
+  }
+
+ private:
+  // What is nearer to the centre, and the radius.
+  void find_near(double distance) {
+    near_.clear();
+    radius_ = far_ = std::min(distance, kFar * full_);
+    const Vec3d reach(far_);
+    surface_.for_each_near(center_ - reach, center_ + reach, [&](const SurfaceTriangle& t) {
+      if (is_plainly_beyond(center_, t, far_)) return;
+      const Vec3d away = nearest_on_triangle(center_, t) - center_;
+      const double length_away = length(away);
+      if (!(length_away < far_ && length_away > 0)) return;
+      radius_ = std::min(radius_, length_away);
+      near_.push_back({away / length_away, length_away, &t, {}});
+    });
+  }
+
+  void take_contacts(double touching) {
+    touching_ = touching;
+    contacts_.clear();
+    for (const Contact& c : near_) {
+      if (!touches(c)) continue;
+      const SurfaceTriangle& t = *c.triangle;
+      contacts_.push_back(c);
+      contacts_.back().normal = normalize(cross(t.p1 - t.p0, t.p2 - t.p0));
+    }
+    middle_ = nearest_of_hull(contacts_);
+  }
+  [[nodiscard]] bool touches(const Contact& c) const {
+    return c.distance <= std::min((1 + touching_) * radius_, full_);
+  }
+
+  // How far the centre may go while the radius grows at a speed and nothing more is touched: distances to triangles are
+  // convex. What has not been found comes nearer at most as fast as the centre moves.
+  [[nodiscard]] double way_until_touch(double speed) const {
+    const Vec3d away = middle_ / speed;
+    double way = (far_ - radius_) / (1 + speed);
+    for (const Contact& c : near_) {
+      const double recedes = dot(c.direction, away);
+      if (recedes < speed && !touches(c))
+        way = std::min(way, (c.distance - radius_) / (speed - recedes));
+    }
+    return way;
+  }
+
+  [[nodiscard]] bool is_stuck() const {
+    if (length(middle_) < kStuck) return true;
+    for (const Contact& a : contacts_) {
+      for (const Contact& b : contacts_) {
+        if (are_opposite(a, b) && !surface_.is_blade(a.triangle->region, b.triangle->region)) {
+          return true;
+        }
+      }
+    }
+    return false;
+  }
+
+  const SolidSurface& surface_;
+  Vec3d center_,
+      middle_;  // of the ball, and of the directions to what it touches: on the way it comes from
+  double full_, radius_ = 0, far_ = 0, touching_ = 0;
+  std::vector<Contact> near_, contacts_;
+};
+
+}  // namespace
+
+ThinWalls find_thin_walls(const ThinWallInput& input) {
+  const auto normal_of = [&](std::uint32_t face) { return input.regions.planes[face].normal; };
+  const auto& triangles = input.surface.triangles();
+  const auto find = [&](std::size_t i, std::vector<std::uint32_t>& sides) {
+    const std::uint32_t face = triangles[i].region;
+    const Vec3d normal = normal_of(face);
+    input.surface.for_each_cut(
+        std::uint32_t(i), normal, input.radius, [&](const SurfaceTriangle& t) {
+          if (dot(normal, normal_of(t.region)) > kOpposite) return;
+          if (std::ranges::binary_search(input.sharp, FacePair(face, t.region))) return;
+          sides.push_back(std::uint32_t(i));
+          sides.push_back(std::uint32_t(&t - triangles.data()));
+        });
+  };
+  ThinWalls walls{parallel_collect<std::uint32_t>(triangles.size(), kTrianglesAtOnce, find), {}};
+  std::ranges::sort(walls.sides);
+  walls.sides.erase(std::unique(walls.sides.begin(), walls.sides.end()), walls.sides.end());
+  for (const FacePair& pair : input.sharp) {
+    if (dot(normal_of(pair.first), normal_of(pair.second)) < kOpposite)
+      walls.blades.push_back(pair);
+  }
+  return walls;
+}
+
+bool gets_stuck(const SolidSurface& surface, Vec3d center, double radius) {
+  return GrowingBall(surface, center, radius).gets_stuck();
+}
+
+bool gets_stuck(const SolidSurface& surface, Vec3d x, Vec3d normal, std::uint32_t face,
+                double radius) {
+  double r = radius;
+  for (int i = 0; i < kHalvings; ++i) {
+    r *= 0.5;
+    if (!surface.is_near(x - normal * r, (1 - kTouching) * r, face)) break;
+  }
+  return gets_stuck(surface, x - normal * r, radius);
+}
+
+}  // namespace arris

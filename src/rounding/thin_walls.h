@@ -1,0 +1,38 @@
+// thin_walls.h — walls with less than two radii of material between their sides: they stay
+// What       A ball that touches the surface in several places grows fastest away from the middle of these: that is how
+//            the distance to the surface rises. Where it comes to the radius, the place is beside an edge or corner, and
+//            rounding takes it away. Where it gets stuck, or touches opposite faces, it is between the sides of a thin
+//            wall, or at the rim of one.
+// In / Out   coordinates relative to the solid's centre
+// Source     A. Lieutier, "Any open bounded subset of R^n has the same homotopy type as its medial axis" (2004): the
+//            generalized gradient of the distance, and its flow
+// Cost       find_thin_walls: linear in the pairs of triangles within 2 r of each other, on all cores; gets_stuck: some
+//            ten to thirty searches of the surface
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include "edges/flat_regions.h"
+#include "rounding/solid_surface.h"
+
+namespace arris {
+
+struct ThinWallInput {
+  const SolidSurface& surface;
+  std::span<const FacePair>
+      sharp;  // faces that meet in such edges; sorted, each pair in both orders
+  const FlatRegions& regions;
+  double radius;
+};
+
+// Some more triangles than get balls stuck. Sides are about opposite to each other, and do not meet in a sharp edge.
+ThinWalls find_thin_walls(const ThinWallInput& input);
+
+// From a place of a face, with the face's normal.
+bool gets_stuck(const SolidSurface& surface, Vec3d x, Vec3d normal, std::uint32_t face,
+                double radius);
+// From a centre within the solid.
+bool gets_stuck(const SolidSurface& surface, Vec3d center, double radius);
+
+}  // namespace arris

@@ -1,0 +1,199 @@
+// thin_walls_test.cpp — where a growing ball gets stuck, and what rounding leaves of solids with walls too thin for it
+#include "rounding/thin_walls.h"
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "arris/rounding.h"
+#include "rounding/rounding_data.h"
+#include "support/creased_solids.h"
+#include "support/rounded_ray.h"
+
+namespace arris::oracle {
+namespace {
+
+// Each triangle a face of its own.
+SolidSurface surface_of(const TriangleSoup& mesh, double radius) {
+  std::vector<SurfaceTriangle> triangles;
+  for (std::uint32_t i = 0; i < mesh.triangles.size(); ++i) {
+    const auto at = [&](std::size_t k) { return Vec3d(mesh.positions[mesh.triangles[i][k]]); };
+    triangles.push_back({at(0), at(1), at(2), i, i});
+  }
+  return {std::move(triangles), radius};
+}
+
+constexpr std::uint32_t kNoFace = 1000;
+
+// Whether a ball gets stuck that begins to grow at a place of a face.
+bool gets_stuck_at(const TriangleSoup& mesh, Vec3d x, Vec3d normal, double radius) {
+  return gets_stuck(surface_of(mesh, radius), x, normal, kNoFace, radius);
+}
+
+TEST(GrowingBall, gets_stuck_between_parallel_walls) {
+  const TriangleSoup slab = prism_over("slab", {{0, 0}, {10, 0}, {10, 10}, {0, 10}}, {});
+  const double thickness = slab.positions.back().z - slab.positions.front().z;
+  for (const double part : {0.51, 0.6, 1.0, 3.0}) {
+    EXPECT_TRUE(gets_stuck_at(slab, {5, 5, 0}, {0, 0, -1}, part * thickness)) << part;
+    EXPECT_TRUE(gets_stuck_at(slab, {0.01, 5, 0}, {0, 0, -1}, part * thickness)) << part;
+    EXPECT_TRUE(gets_stuck_at(slab, {0, 0.2, 0.01}, {-1, 0, 0}, part * thickness)) << part;
+  }
+  for (const double part : {0.1, 0.3, 0.499}) {
+    EXPECT_FALSE(gets_stuck_at(slab, {5, 5, 0}, {0, 0, -1}, part * thickness)) << part;
+    EXPECT_FALSE(gets_stuck_at(slab, {0.01, 5, 0}, {0, 0, -1}, part * thickness)) << part;
+    EXPECT_FALSE(gets_stuck_at(slab, {1e-4, 0.2, 0}, {0, 0, -1}, part * thickness)) << part;
+  }
+}
+
+// A trapezoid whose sides lean by an angle each: a ball between them grows by the sine of it as it moves.
+TEST(GrowingBall, gets_stuck_between_walls_that_are_nearly_parallel) {
+  const auto is_stuck = [](double lean) {
+    const double wide = 0.2 + 4 * std::tan(radians(lean));
+    const TriangleSoup tooth =
+        prism_over("tooth", {{-wide, 0}, {wide, 0}, {0.2, 4}, {-0.2, 4}}, {});
+    const double height = 0.5 * (tooth.positions.front().z + tooth.positions.back().z);
+    return gets_stuck_at(tooth, {0.05, 4, height}, {0, 1, 0}, 0.4);
+  };
+  for (const double lean : {0.0, 2.0, 10.0, 17.0}) EXPECT_TRUE(is_stuck(lean)) << lean;
+  for (const double lean : {19.0, 25.0, 40.0}) EXPECT_FALSE(is_stuck(lean)) << lean;
+}
+
+// A wheel whose teeth are narrower than two balls at their tips.
+TriangleSoup gear(double tip) {
+  Outline outline;
+  constexpr int kTeeth = 9;
+  for (int i = 0; i < kTeeth; ++i) {
+    const double middle = 2 * kPi * i / kTeeth;
+    for (const auto& [radius, turn] : {std::pair(1.0, -0.2), {1.4, -tip}, {1.4, tip}, {1.0, 0.2}}) {
+      outline.push_back({radius * std::cos(middle + turn), radius * std::sin(middle + turn)});
+    }
+  }
+  return prism_over("gear", outline, {});
+}
+
+Rounding round(const TriangleSoup& mesh, double radius) {
+  RoundingOptions options;
+  options.radius = radius;
+  options.too_large = TooLarge::leave_sharp;
+  return make_rounding(mesh.view(), options, mesh.name);
+}
+
+struct Agreement {
+  std::uint64_t rays = 0, through = 0;
+  std::string examples;
+};
+
+// Shoots rays at the surface near edges, and others at the places that they hit.
+class Shooter {
+ public:
+  Shooter(const TriangleSoup& mesh, double radius)
+      : mesh_(mesh), radius_(radius), far_(2 * mesh.size()), rounding_(round(mesh, radius)) {}
+
+  // A place that one ray comes to is where others that are aimed at it stop, too, if nothing is before it.
+  void compare(int count, Agreement& out) {
+    for (int i = 0; i < count; ++i) {
+      const Ray first = at(near_edge(), random_direction(rng_));
+      const auto hit = trace(first, {mesh_.view(), &rounding_});
+      if (!hit) continue;
+      const Vec3d x = first.origin + first.direction * hit->t;
+      for (int k = 0; k < 4; ++k) {
+        Vec3d d = random_direction(rng_);
+        if (dot(d, hit->normal) > 0) d = -d;
+        if (dot(d, hit->normal) < -kLeastCosine) look(at(x, d), *hit, x, out);
+      }
+    }
+  }
+
+ private:
+  static constexpr double kLeastCosine = 0.2, kOff = 0.1;
+
+  Vec3d near_edge() {
+    const auto last = int(mesh_.triangles.size()) - 1;
+    const Triangle& t = mesh_.triangles[std::size_t(uniform_int(rng_, 0, last))];
+    const Vec3d p(mesh_.positions[t[0]]), q(mesh_.positions[t[1]]);
+    return p + (q - p) * uniform(rng_, 0, 1) +
+           random_direction(rng_) * (radius_ * uniform(rng_, 0, 1.5));
+  }
+  [[nodiscard]] Ray at(Vec3d target, Vec3d d) const { return {target - d * far_, d}; }
+
+  void look(const Ray& ray, const RoundedHit& hit, Vec3d x, Agreement& out) const {
+    const auto again = trace(ray, {mesh_.view(), &rounding_});
+    const double beyond = again ? again->t - far_ : far_;
+    if (beyond < -kOff * radius_) return;
+    ++out.rays;
+    if (beyond < kOff * radius_) return;
+    ++out.through;
+    out.examples += fmt::format(
+        "{} radius {:.4f}: place ({:.5f}, {:.5f}, {:.5f}) on {}, from "
+        "({:.3f}, {:.3f}, {:.3f}): {:.2f} radii behind it\n",
+        mesh_.name, radius_, x.x, x.y, x.z, name_of(hit.feature), ray.direction.x, ray.direction.y,
+        ray.direction.z, beyond / radius_);
+  }
+
+  const TriangleSoup& mesh_;
+  double radius_, far_;
+  Rounding rounding_;
+  Random rng_{7};
+};
+
+TEST(ThinWalls, are_the_same_from_all_sides) {
+  std::vector<std::pair<TriangleSoup, double>> cases{
+      {gear(0.03), 0.08},
+      {gear(0.08), 0.08},
+      {gear(0.08), 0.15},
+      {prism_over("wedge", {{0, 0}, {4, 0}, {4, 2}, {0, 0.3}}, {}), 0.3},
+      {prism_over("bent wedge", {{0, 0}, {4, 0}, {4, 2}, {3, 2}, {3, 1.6}, {0, 0.3}}, {}), 0.3},
+      {block_with_boss("thin boss", 0.1, 0.1, 0.9), 0.15},
+      {block_with_boss("tapered boss", 0.2, 0.1, 0.9), 0.15},
+      {block_with_boss("low boss", 0.1, 0.1, 0.05), 0.15},
+      {block_with_boss("step", 0.8, 0.8, 0.05), 0.15},
+      {block_with_boss("thin floor", 0.8, 0.8, -1.4), 0.15},
+      {block_with_boss("leaning boss", 0.3, 0.1, 0.9, 0.4), 0.2}};
+  Agreement found;
+  for (const auto& [mesh, radius] : cases) Shooter(mesh, radius).compare(600, found);
+  EXPECT_LE(found.through * 5000, found.rays) << found.examples;
+  // Solids and radii at random: pieces of walls may be thinner than the steps in which they are looked for.
+  Agreement any;
+  for (std::uint64_t seed = 1; seed < 12; ++seed) {
+    Random rng(seed);
+    for (const TriangleSoup& mesh : make_nonconvex_solids(seed)) {
+      Shooter(mesh, std::pow(10, uniform(rng, -2, -0.5)) * mesh.size()).compare(300, any);
+    }
+  }
+  EXPECT_GT(any.rays, 50000U);
+  EXPECT_LE(any.through * 5000, any.rays) << any.examples;
+}
+
+// The wedge's long edges are rounded from where a ball fits between its sides, and listed as sharp up to there.
+TEST(ThinWalls, edges_are_listed_as_far_as_they_stay) {
+  const Vec3d from(0, 0.3, 0), to(4, 2, 0);
+  const TriangleSoup mesh =
+      prism_over("wedge", {{0, 0}, {4, 0}, {4, 2}, {3.9, 2}, {3.9, to.y - 0.0425}, {0, 0.3}}, {});
+  constexpr double kRadius = 0.3;
+  const Rounding rounding = round(mesh, kRadius);
+  ASSERT_EQ(rounding.data().creased.size(), 1U);
+  // Below the slanted side, r from both: y = r, and r / cos above it.
+  const double slope = (to.y - from.y) / (to.x - from.x);
+  const double x = (kRadius + kRadius * std::hypot(1, slope) - from.y) / slope;
+  int listed = 0;
+  for (const ClampedEdge& edge : rounding.report().clamped) {
+    EXPECT_EQ(edge.radius, 0);
+    const double least = std::min(edge.from.x, edge.to.x), most = std::max(edge.from.x, edge.to.x);
+    if (most - least < 0.1) continue;
+    ++listed;
+    EXPECT_EQ(least, 0);
+    // The ball's centre is beside the place where it touches the slanted side, by r sin.
+    const bool is_straight = std::max(edge.from.y, edge.to.y) < 1e-6;
+    EXPECT_NEAR(most, is_straight ? x : x - kRadius * slope / std::hypot(1, slope), 0.01);
+  }
+  EXPECT_EQ(listed, 4);
+}
+
+}  // namespace
+}  // namespace arris::oracle
