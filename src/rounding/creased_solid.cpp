@@ -157,9 +157,8 @@ bool CreasedSolid::is_kept(Vec3d x, Vec3d normal, std::uint32_t region) const {
 }
 
 bool CreasedSolid::stays(Vec3d x, Vec3d normal, std::uint32_t region, double r) const {
-  if (std::ranges::binary_search(firm, region)) return true;
-  const Vec3d center = x - normal * r, reach(r);
-  return surface.has_wall_near(center - reach, center + reach) &&
+  if (surface.is_firm(region)) return true;
+  return is_between_walls(surface, x - normal * r, 2 * r) &&
          gets_stuck(surface, x, normal, region, r - tolerance);
 }
 
@@ -176,7 +175,9 @@ std::optional<PipeHit> CreasedSolid::first_material(Vec3d x, Vec3d direction,
   const double end = met ? met->t : exit.t;
   if (!std::isfinite(end)) return std::nullopt;
   const Vec3d last = x + direction * end;
-  if (field.is_uniform() && firm.empty() && !surface.has_wall_near(min(x, last), max(x, last))) {
+  const Vec3d reach(radius);
+  if (field.is_uniform() && !surface.has_firm_near(min(x, last) - reach, max(x, last) + reach) &&
+      !is_between_walls(surface, (x + last) * 0.5, 2 * radius + 0.5 * length(last - x))) {
     return std::nullopt;
   }
   const double speed = length(direction), most = kWayAtOnce * radius / speed;
@@ -209,19 +210,16 @@ const CreaseShape& CreasedSolid::shape() const {
 
 std::vector<std::pair<double, double>> CreasedSolid::find_sharp_parts(const FaceEdge& edge) const {
   std::vector<std::pair<double, double>> parts;
-  const bool is_firm = std::ranges::binary_search(firm, edge.region0) ||
-                       std::ranges::binary_search(firm, edge.region1);
-  if (is_firm) return {{0, 1}};
-  const Vec3d reach(radius);
-  const bool may_stay =
-      surface.has_wall_near(min(edge.p0, edge.p1) - reach, max(edge.p0, edge.p1) + reach);
+  if (surface.is_firm(edge.region0) || surface.is_firm(edge.region1)) return {{0, 1}};
+  const bool may_stay = is_between_walls(surface, (edge.p0 + edge.p1) * 0.5,
+                                         2 * radius + 0.5 * length(edge.p1 - edge.p0));
   if (field.is_uniform() && !may_stay) return parts;
-  const Vec3d down = normalize(edge.normal0 + edge.normal1) * kBeneathEdge;
+  const Vec3d down = normalize(edge.normal0 + edge.normal1);
   const auto is_sharp = [&](double u) {
     const Vec3d x = edge.p0 + (edge.p1 - edge.p0) * u;
     const double r = field.at(x);
-    return r <= tolerance || (may_stay && surface.has_wall_near(x - reach, x + reach) &&
-                              gets_stuck(surface, x - down * r, r - tolerance));
+    return r <= tolerance || (may_stay && is_between_walls(surface, x - down * r, 2 * r) &&
+                              gets_stuck(surface, x - down * (kBeneathEdge * r), r - tolerance));
   };
   const double extent = length(edge.p1 - edge.p0);
   const int steps = std::clamp(int(std::ceil(extent / (kEdgeStep * radius))), 2, kMostEdgeSteps);

@@ -43,8 +43,6 @@ struct CreasedSolid {
   RadiusField field{0};
   double radius = 0;     // the largest
   double tolerance = 0;  // crease_tolerance()
-  // Regions that stay though no ball touches them, and no crease is near that rounds them: sorted.
-  std::vector<std::uint32_t> firm;
 
   // Which part of the balls is surface, for outlines: made on all cores when it is first asked for.
   [[nodiscard]] const CreaseShape& shape() const;

@@ -74,14 +74,10 @@ class CreasedMaker {
     std::vector<TriangleBand> bands = parallel_collect<TriangleBand>(
         triangles_.size(), kTrianglesAtOnce,
         [&](std::size_t i, auto& list) { append_bands(surface, triangles_[i], list); });
-    CreasedSolid solid{std::move(surface),
-                       CreasePipes(std::move(found.curves)),
-                       std::move(found.field),
-                       r_,
-                       crease_tolerance(outer_.size(), r_),
-                       {}};
-    solid.firm = faces_that_vanish(solid);
-    if (in_.is_outside && !solid.firm.empty()) return std::nullopt;
+    CreasedSolid solid{std::move(surface), CreasePipes(std::move(found.curves)),
+                       std::move(found.field), r_, crease_tolerance(outer_.size(), r_)};
+    solid.surface.set_firm(faces_that_vanish(solid));
+    if (in_.is_outside && solid.surface.has_firm()) return std::nullopt;
     std::vector<PlainCrease> plain = find_plain_creases(solid, in_.regions.planes);
     std::vector<ClampedPart> clamped;
     for (const VariedCreases::Edge& e : found.smaller) clamped.push_back({e.half_edge, e.radius});
@@ -145,7 +141,7 @@ class CreasedMaker {
 
   // Of edges that have no room for the radius, and are not yet among what is clamped.
   void append_sharp_parts(const CreasedSolid& solid, std::vector<ClampedPart>& clamped) const {
-    if (!solid.surface.has_walls() && solid.firm.empty()) return;
+    if (!solid.surface.has_walls() && !solid.surface.has_firm()) return;
     std::vector<std::uint32_t> known, edges;
     for (const ClampedPart& part : clamped) {
       if (part.radius == 0) known.push_back(part.half_edge);

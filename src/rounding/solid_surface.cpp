@@ -99,14 +99,6 @@ void SolidSurface::set_walls(ThinWalls walls) {
   for (const std::uint32_t t : walls.sides) is_wall_[t] = true;
 }
 
-bool SolidSurface::has_wall_near(Vec3d low, Vec3d high) const {
-  bool found = false;
-  if (has_walls()) {
-    tree_.for_each_near(low, high, [&](std::uint32_t i) { found = found || is_wall_[i]; });
-  }
-  return found;
-}
-
 SolidSurface::Exit SolidSurface::first_exit(Vec3d origin, Vec3d direction, double after) const {
   Exit exit{std::numeric_limits<double>::infinity(), kNone, {}};
   tree_.for_each_along(origin, direction, after, exit.t, [&](std::uint32_t i) {
@@ -130,7 +122,8 @@ SolidSurface::Exit SolidSurface::first_exit(Vec3d origin, Vec3d direction, doubl
 
 std::size_t SolidSurface::bytes() const {
   return triangles_.size() * sizeof(SurfaceTriangle) +
-         (joined_.size() + blades_.size()) * sizeof(FacePair) + is_wall_.size() / 8 + tree_.bytes();
+         (joined_.size() + blades_.size()) * sizeof(FacePair) + is_wall_.size() / 8 +
+         firm_.size() * sizeof(std::uint32_t) + tree_.bytes();
 }
 
 }  // namespace arris

@@ -54,6 +54,8 @@ class SolidSurface {
   // joined: see smooth_reach.h
   void set_joined(std::vector<FacePair> joined) { joined_ = std::move(joined); }
   void set_walls(ThinWalls walls);
+  // firm: regions that stay whatever balls do; sorted.
+  void set_firm(std::vector<std::uint32_t> firm) { firm_ = std::move(firm); }
   // Whether what touches a face may cut into another one.
   [[nodiscard]] bool is_joined(std::uint32_t face, std::uint32_t other) const {
     return !joined_.empty() && std::ranges::binary_search(joined_, FacePair(face, other));
@@ -63,11 +65,22 @@ class SolidSurface {
     return std::ranges::binary_search(blades_, FacePair(face, other));
   }
   [[nodiscard]] bool has_walls() const { return !is_wall_.empty(); }
+  [[nodiscard]] bool is_firm(std::uint32_t region) const {
+    return std::ranges::binary_search(firm_, region);
+  }
+  [[nodiscard]] bool has_firm() const { return !firm_.empty(); }
 
   // Whether a triangle of another region, one that isn't joined to it, is nearer to x than `distance`.
   [[nodiscard]] bool is_near(Vec3d x, double distance, std::uint32_t but_region) const;
-  // Whether a side of a thin wall reaches into a box.
-  [[nodiscard]] bool has_wall_near(Vec3d low, Vec3d high) const;
+  // Whether a firm triangle reaches into a box.
+  [[nodiscard]] bool has_firm_near(Vec3d low, Vec3d high) const {
+    bool found = false;
+    if (has_firm()) {
+      for_each_near(low, high,
+                    [&](const SurfaceTriangle& t) { found = found || is_firm(t.region); });
+    }
+    return found;
+  }
 
   // The t > after at which the ray first leaves through a triangle, with its region and unit normal; infinity if it
   // doesn't. A ray through an edge meets both triangles.
@@ -83,6 +96,14 @@ class SolidSurface {
   void for_each_near(Vec3d low, Vec3d high, Visit&& visit) const {
     tree_.for_each_near(low, high, [&](std::uint32_t i) { visit(triangles_[i]); });
   }
+  // The same for the sides of thin walls alone.
+  template <class Visit>
+  void for_each_wall_near(Vec3d low, Vec3d high, Visit&& visit) const {
+    if (!has_walls()) return;
+    tree_.for_each_near(low, high, [&](std::uint32_t i) {
+      if (is_wall_[i]) visit(triangles_[i]);
+    });
+  }
   // Visits those of other regions into which a ball may cut that touches a triangle, of the given normal; some more
   // than once.
   template <class Visit>
@@ -94,6 +115,7 @@ class SolidSurface {
   std::vector<SurfaceTriangle> triangles_;
   std::vector<FacePair> joined_, blades_;  // sorted
   std::vector<bool> is_wall_;              // by triangle; empty: none is
+  std::vector<std::uint32_t> firm_;
   BoxTree tree_;
 };
 

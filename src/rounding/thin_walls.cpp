@@ -30,6 +30,10 @@ struct Contact {
   Vec3d normal;  // of the triangle
 };
 
+Vec3d normal_of(const SurfaceTriangle& t) {
+  return normalize(cross(t.p1 - t.p0, t.p2 - t.p0));
+}
+
 // Whether these are the two sides of a wall, or the rims of two.
 bool are_opposite(const Contact& a, const Contact& b) {
   return dot(a.normal, b.normal) < kOpposite || dot(a.direction, b.direction) < kOpposite;
@@ -92,9 +96,8 @@ class GrowingBall {
     contacts_.clear();
     for (const Contact& c : near_) {
       if (!touches(c)) continue;
-      const SurfaceTriangle& t = *c.triangle;
       contacts_.push_back(c);
-      contacts_.back().normal = normalize(cross(t.p1 - t.p0, t.p2 - t.p0));
+      contacts_.back().normal = normal_of(*c.triangle);
     }
     middle_ = nearest_of_hull(contacts_);
   }
@@ -158,6 +161,22 @@ ThinWalls find_thin_walls(const ThinWallInput& input) {
       walls.blades.push_back(pair);
   }
   return walls;
+}
+
+bool is_between_walls(const SolidSurface& surface, Vec3d center, double radius) {
+  if (!surface.has_walls()) return false;
+  const Vec3d reach(radius);
+  std::vector<Contact> sides;
+  surface.for_each_wall_near(center - reach, center + reach, [&](const SurfaceTriangle& t) {
+    if (is_plainly_beyond(center, t, radius)) return;
+    const Vec3d away = nearest_on_triangle(center, t) - center;
+    const double distance = length(away);
+    if (distance < radius) sides.push_back({away, distance, &t, normal_of(t)});
+  });
+  return std::ranges::any_of(sides, [&](const Contact& a) {
+    return std::ranges::any_of(
+        sides, [&](const Contact& b) { return dot(a.normal, b.normal) < kOpposite; });
+  });
 }
 
 bool gets_stuck(const SolidSurface& surface, Vec3d center, double radius) {

@@ -1,6 +1,6 @@
 // thin_walls.h — walls with less than two radii of material between their sides: they stay
 // What       A ball that touches the surface in several places grows fastest away from the middle of these: that is how
-//            the distance to the surface rises. Where it comes to the radius, the place is beside an edge or corner, and
+//            the distance to the surface rises. Where it comes to the radius, the place is beside an edge or corner and
 //            rounding takes it away. Where it gets stuck, or touches opposite faces, it is between the sides of a thin
 //            wall, or at the rim of one.
 // In / Out   coordinates relative to the solid's centre
@@ -29,6 +29,8 @@ struct ThinWallInput {
 // Some more triangles than get balls stuck. Sides are about opposite to each other, and do not meet in a sharp edge.
 ThinWalls find_thin_walls(const ThinWallInput& input);
 
+// Whether both sides of a wall reach into a ball: none can get stuck on its way there else.
+bool is_between_walls(const SolidSurface& surface, Vec3d center, double radius);
 // From a place of a face, with the face's normal.
 bool gets_stuck(const SolidSurface& surface, Vec3d x, Vec3d normal, std::uint32_t face,
                 double radius);
