@@ -50,6 +50,13 @@ class BoxTree {
     const Vec3d half = (high - low) * 0.5;
     for_each_where([&](const Node& node) { return reaches(node, middle, half); }, visit);
   }
+  // Whether one of these is what is looked for; no more are visited then.
+  template <class IsIt>
+  [[nodiscard]] bool any_near(Vec3d low, Vec3d high, IsIt&& is_it) const {
+    const Vec3d middle = (low + high) * 0.5;
+    const Vec3d half = (high - low) * 0.5;
+    return any_where([&](const Node& node) { return reaches(node, middle, half); }, is_it);
+  }
   // Visits the item of every box that the ray meets between two of its t, and some beside it. The visitor may bring
   // the end nearer.
   template <class Visit>
@@ -72,14 +79,24 @@ class BoxTree {
 
   template <class IsNear, class Visit>
   void for_each_where(IsNear&& is_near, Visit&& visit) const {
+    (void)any_where(is_near, [&](std::uint32_t item) {
+      visit(item);
+      return false;
+    });
+  }
+  template <class IsNear, class IsIt>
+  [[nodiscard]] bool any_where(IsNear&& is_near, IsIt&& is_it) const {
     for (std::uint32_t i = 0; i < nodes_.size();) {
       const Node& node = nodes_[i];
       const bool near = is_near(node);
       if (near) {
-        for (std::uint32_t k = 0; k < node.count; ++k) visit(items_[node.first + k]);
+        for (std::uint32_t k = 0; k < node.count; ++k) {
+          if (is_it(items_[node.first + k])) return true;
+        }
       }
       i = near ? i + 1 : node.next;
     }
+    return false;
   }
 
   static bool reaches(const Node& node, const SlabBounds& slab);

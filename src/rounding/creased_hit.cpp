@@ -40,13 +40,14 @@ class CreasedHit {
   }
 
   // Nothing: the local network decides.
-  [[nodiscard]] std::optional<Resolution> resolve(const Ray& ray) const {
+  [[nodiscard]] std::optional<Resolution> resolve(const Ray& ray, const MeshHit& hit) const {
     // From a local rounding's void: the solid is closed, and its inside is not met.
     if (inner_ == nullptr && !entering_ && start_ == RayStart::outside) {
       return make(Resolution::Outcome::passed, at_.t, normal_, Feature::face);
     }
-    const bool covered = is_covered(at_.x, at_.face);
-    const bool kept = inner_ == nullptr || is_kept(at_.x, at_.face);
+    const bool covered = !is_clear(filled_ == nullptr ? nullptr : &filled_->outside, hit) &&
+                         is_covered(at_.x, at_.face);
+    const bool kept = inner_ == nullptr || is_clear(inner_, hit) || is_kept(at_.x, at_.face);
     if (covered && (entering_ || kept)) return through_fillet(kept);
     if (inner_ == nullptr) return std::nullopt;
     if (!entering_ && start_ == RayStart::outside) return out_of_void(ray, covered);
@@ -57,6 +58,9 @@ class CreasedHit {
  private:
   [[nodiscard]] const Face& face() const { return data_.faces[at_.face]; }
 
+  static bool is_clear(const CreasedSolid* solid, const MeshHit& hit) {
+    return solid != nullptr && solid->clear.is_clear(hit.triangle, hit.u, hit.v);
+  }
   [[nodiscard]] bool is_kept(Vec3d x, std::uint32_t face) const {
     return inner_->is_kept(x, Vec3d(data_.faces[face].normal), face);
   }
@@ -169,7 +173,7 @@ std::optional<Resolution> resolve_creased(const Rounding::Data& data, const Soli
                                           const CreasedEvent& event) {
   const CreasedHit creased(data, solid, event.at, event.start);
   const std::optional<Resolution> found = creased.settle_plainly(event.hit);
-  return found ? found : creased.resolve(event.ray);
+  return found ? found : creased.resolve(event.ray, event.hit);
 }
 
 }  // namespace arris

@@ -16,6 +16,7 @@
 
 #include "arris/rounding.h"
 #include "edges/flat_regions.h"
+#include "rounding/clear_cells.h"
 #include "rounding/crease_pipes.h"
 #include "rounding/crease_shape.h"
 #include "rounding/creases.h"
@@ -43,6 +44,7 @@ struct CreasedSolid {
   RadiusField field{0};
   double radius = 0;     // the largest
   double tolerance = 0;  // crease_tolerance()
+  ClearCells clear;      // of the caller's triangles
 
   // Which part of the balls is surface, for outlines: made on all cores when it is first asked for.
   [[nodiscard]] const CreaseShape& shape() const;
@@ -61,7 +63,7 @@ struct CreasedSolid {
   // which the normal lies. Nothing: there are no such two. Points are relative to the centre, triangles the mesh's.
   [[nodiscard]] std::optional<EdgeBlend> blend_at(Vec3d x, Vec3d normal) const;
   [[nodiscard]] std::size_t bytes() const {
-    return surface.bytes() + pipes.bytes() + field.bytes();
+    return surface.bytes() + pipes.bytes() + field.bytes() + clear.bytes();
   }
 
   // Whether rounding leaves all that it should take away at a place, for a ball of the radius that it can't touch.

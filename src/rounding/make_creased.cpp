@@ -13,9 +13,11 @@ namespace arris {
 namespace {
 
 // Triangles, and edges, that one thread looks at at a time.
-constexpr std::size_t kTrianglesAtOnce = 256, kEdgesAtOnce = 64;
+constexpr std::size_t kTrianglesAtOnce = 256, kEdgesAtOnce = 64, kGridsAtOnce = 16;
 // Pairs of triangles within the radius that are too many on a curved surface; and how they are estimated.
 constexpr std::size_t kMostPairs = 8'000'000, kSampledTriangles = 256;
+// Of the radius' square: bands of less are left as they are.
+constexpr double kLargeArea = 16;
 // Relative to the radius: a place this near to a crease is of a rounded edge or corner.
 constexpr double kNearCrease = 2;
 
@@ -74,8 +76,13 @@ class CreasedMaker {
     std::vector<TriangleBand> bands = parallel_collect<TriangleBand>(
         triangles_.size(), kTrianglesAtOnce,
         [&](std::size_t i, auto& list) { append_bands(surface, triangles_[i], list); });
-    CreasedSolid solid{std::move(surface), CreasePipes(std::move(found.curves)),
-                       std::move(found.field), r_, crease_tolerance(outer_.size(), r_)};
+    ClearCells clear = find_clear_cells(surface, bands);
+    CreasedSolid solid{std::move(surface),
+                       CreasePipes(std::move(found.curves)),
+                       std::move(found.field),
+                       r_,
+                       crease_tolerance(outer_.size(), r_),
+                       std::move(clear)};
     solid.surface.set_firm(faces_that_vanish(solid));
     if (in_.is_outside && solid.surface.has_firm()) return std::nullopt;
     std::vector<PlainCrease> plain = find_plain_creases(solid, in_.regions.planes);
@@ -231,17 +238,56 @@ class CreasedMaker {
     return BoxTree(std::move(boxes));
   }
 
-  void append_bands(const SolidSurface& surface, std::uint32_t t,
-                    std::vector<TriangleBand>& bands) const {
-    // Pieces of split triangles have no barycentrics of their own.
-    if (t >= in_.mesh.triangles.size() || in_.regions.region[t] == kNone) return;
+  // Of the caller's mesh. Nothing: pieces of split triangles have no barycentrics of their own.
+  [[nodiscard]] std::optional<SurfaceTriangle> callers_triangle(std::uint32_t t) const {
+    if (t >= in_.mesh.triangles.size() || in_.regions.region[t] == kNone) return std::nullopt;
     const Triangle& corners = in_.mesh.triangles[t];
     const auto at = [&](std::size_t k) { return Vec3d(in_.mesh.positions[corners[k]]) - center_; };
-    const SurfaceTriangle triangle{at(0), at(1), at(2), in_.regions.region[t], t};
-    const Vec3d normal = in_.regions.planes[triangle.region].normal;
-    for (const DepthAtCorners& d : find_depths(surface, triangle, normal, r_)) {
+    return SurfaceTriangle{at(0), at(1), at(2), in_.regions.region[t], t};
+  }
+
+  void append_bands(const SolidSurface& surface, std::uint32_t t,
+                    std::vector<TriangleBand>& bands) const {
+    const std::optional<SurfaceTriangle> triangle = callers_triangle(t);
+    if (!triangle) return;
+    const Vec3d normal = in_.regions.planes[triangle->region].normal;
+    for (const DepthAtCorners& d : find_depths(surface, *triangle, normal, r_)) {
       bands.push_back({t, {float(d.d0), float(d.d1 - d.d0), float(d.d2 - d.d0), kNone}});
     }
+  }
+
+  // Of triangles that bands tell little of. Those of a triangle come one after another.
+  [[nodiscard]] ClearCells find_clear_cells(const SolidSurface& surface,
+                                            std::span<const TriangleBand> bands) const {
+    std::vector<std::span<const TriangleBand>> of;
+    for (std::size_t i = 0, end = 0; i < bands.size(); i = end) {
+      while (end < bands.size() && bands[end].triangle == bands[i].triangle) ++end;
+      of.push_back(bands.subspan(i, end - i));
+    }
+    return ClearCells(parallel_collect<ClearCells::Grid>(
+        of.size(), kGridsAtOnce, [&](std::size_t i, std::vector<ClearCells::Grid>& grids) {
+          const SurfaceTriangle triangle = *callers_triangle(of[i].front().triangle);
+          const double area =
+              0.5 * length(cross(triangle.p1 - triangle.p0, triangle.p2 - triangle.p0));
+          if (!(share_in(of[i]) * area > kLargeArea * r_ * r_)) return;
+          const Vec3d normal = in_.regions.planes[triangle.region].normal;
+          ClearCells::Grid grid = ClearCells::make_grid(surface, triangle, normal, r_);
+          if (!grid.rows.empty()) grids.push_back(std::move(grid));
+        }));
+  }
+
+  // How much of a triangle lies in its bands, nearly.
+  static double share_in(std::span<const TriangleBand> bands) {
+    constexpr int kSamples = 12;  // along each side
+    int within = 0, all = 0;
+    for (int i = 0; i < kSamples; ++i) {
+      for (int j = 0; i + j < kSamples; ++j, ++all) {
+        const float u = (float(i) + 0.33F) / kSamples, v = (float(j) + 0.33F) / kSamples;
+        const auto holds = [&](const TriangleBand& b) { return b.band.depth(u, v) > 0; };
+        within += std::ranges::any_of(bands, holds) ? 1 : 0;
+      }
+    }
+    return double(within) / all;
   }
 
   const CreasedInput& in_;

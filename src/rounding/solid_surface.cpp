@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
+#include <span>
 #include <utility>
 
 #include "edges/welded_mesh.h"
@@ -10,14 +12,22 @@
 namespace arris {
 namespace {
 
-std::vector<Box> boxes_of(const std::vector<SurfaceTriangle>& triangles, double reach) {
+// Of some of the triangles.
+std::vector<Box> boxes_of(const std::vector<SurfaceTriangle>& triangles,
+                          std::span<const std::uint32_t> some, double reach) {
   std::vector<Box> boxes;
-  boxes.reserve(triangles.size());
-  for (std::uint32_t i = 0; i < triangles.size(); ++i) {
+  boxes.reserve(some.size());
+  for (const std::uint32_t i : some) {
     const auto& [p0, p1, p2, region, index] = triangles[i];
     append_triangle_boxes({p0, p1, p2}, reach, i, boxes);
   }
   return boxes;
+}
+
+std::vector<Box> boxes_of(const std::vector<SurfaceTriangle>& triangles, double reach) {
+  std::vector<std::uint32_t> all(triangles.size());
+  std::iota(all.begin(), all.end(), 0U);
+  return boxes_of(triangles, all, reach);
 }
 
 // Relative to the radius: what is no nearer than this short of it only touches.
@@ -80,23 +90,21 @@ bool may_be_cut(const std::array<Vec3d, 3>& centers, Vec3d normal, const Surface
 }
 
 SolidSurface::SolidSurface(std::vector<SurfaceTriangle> triangles, double reach)
-    : triangles_(std::move(triangles)), tree_(boxes_of(triangles_, reach)) {}
+    : triangles_(std::move(triangles)), tree_(boxes_of(triangles_, reach)), reach_(reach) {}
 
 bool SolidSurface::is_near(Vec3d x, double distance, std::uint32_t but_region) const {
-  bool found = false;
-  for_each_near(x - Vec3d(distance), x + Vec3d(distance), [&](const SurfaceTriangle& t) {
-    if (found || t.region == but_region) return;
-    if (is_plainly_beyond(x, t, distance)) return;
-    found = length_squared(x - nearest_on_triangle(x, t)) < distance * distance &&
-            !is_joined(but_region, t.region);
+  return tree_.any_near(x - Vec3d(distance), x + Vec3d(distance), [&](std::uint32_t i) {
+    const SurfaceTriangle& t = triangles_[i];
+    if (t.region == but_region || is_plainly_beyond(x, t, distance)) return false;
+    return length_squared(x - nearest_on_triangle(x, t)) < distance * distance &&
+           !is_joined(but_region, t.region);
   });
-  return found;
 }
 
 void SolidSurface::set_walls(ThinWalls walls) {
   blades_ = std::move(walls.blades);
-  is_wall_.assign(walls.sides.empty() ? 0 : triangles_.size(), false);
-  for (const std::uint32_t t : walls.sides) is_wall_[t] = true;
+  has_walls_ = !walls.sides.empty();
+  wall_tree_ = BoxTree(boxes_of(triangles_, walls.sides, reach_));
 }
 
 SolidSurface::Exit SolidSurface::first_exit(Vec3d origin, Vec3d direction, double after) const {
@@ -122,7 +130,7 @@ SolidSurface::Exit SolidSurface::first_exit(Vec3d origin, Vec3d direction, doubl
 
 std::size_t SolidSurface::bytes() const {
   return triangles_.size() * sizeof(SurfaceTriangle) +
-         (joined_.size() + blades_.size()) * sizeof(FacePair) + is_wall_.size() / 8 +
+         (joined_.size() + blades_.size()) * sizeof(FacePair) + wall_tree_.bytes() +
          firm_.size() * sizeof(std::uint32_t) + tree_.bytes();
 }
 

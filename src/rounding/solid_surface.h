@@ -64,7 +64,7 @@ class SolidSurface {
   [[nodiscard]] bool is_blade(std::uint32_t face, std::uint32_t other) const {
     return std::ranges::binary_search(blades_, FacePair(face, other));
   }
-  [[nodiscard]] bool has_walls() const { return !is_wall_.empty(); }
+  [[nodiscard]] bool has_walls() const { return has_walls_; }
   [[nodiscard]] bool is_firm(std::uint32_t region) const {
     return std::ranges::binary_search(firm_, region);
   }
@@ -74,12 +74,9 @@ class SolidSurface {
   [[nodiscard]] bool is_near(Vec3d x, double distance, std::uint32_t but_region) const;
   // Whether a firm triangle reaches into a box.
   [[nodiscard]] bool has_firm_near(Vec3d low, Vec3d high) const {
-    bool found = false;
-    if (has_firm()) {
-      for_each_near(low, high,
-                    [&](const SurfaceTriangle& t) { found = found || is_firm(t.region); });
-    }
-    return found;
+    return has_firm() && tree_.any_near(low, high, [&](std::uint32_t i) {
+      return is_firm(triangles_[i].region);
+    });
   }
 
   // The t > after at which the ray first leaves through a triangle, with its region and unit normal; infinity if it
@@ -99,10 +96,7 @@ class SolidSurface {
   // The same for the sides of thin walls alone.
   template <class Visit>
   void for_each_wall_near(Vec3d low, Vec3d high, Visit&& visit) const {
-    if (!has_walls()) return;
-    tree_.for_each_near(low, high, [&](std::uint32_t i) {
-      if (is_wall_[i]) visit(triangles_[i]);
-    });
+    wall_tree_.for_each_near(low, high, [&](std::uint32_t i) { visit(triangles_[i]); });
   }
   // Visits those of other regions into which a ball may cut that touches a triangle, of the given normal; some more
   // than once.
@@ -114,9 +108,10 @@ class SolidSurface {
  private:
   std::vector<SurfaceTriangle> triangles_;
   std::vector<FacePair> joined_, blades_;  // sorted
-  std::vector<bool> is_wall_;              // by triangle; empty: none is
   std::vector<std::uint32_t> firm_;
-  BoxTree tree_;
+  BoxTree tree_, wall_tree_{{}};
+  double reach_;
+  bool has_walls_ = false;
 };
 
 template <class Visit>
