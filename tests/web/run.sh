@@ -11,7 +11,7 @@ skip() {
   exit 77
 }
 command -v node >/dev/null || skip "node is missing"
-if [ "$name" = view ]; then
+if [ "$name" = server ] || [ "$name" = view ]; then
   CHROMIUM=$(command -v chromium) || skip "chromium is missing"
   export CHROMIUM
   [ -d node_modules/playwright-core ] || skip "playwright-core is missing"
