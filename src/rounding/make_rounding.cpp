@@ -5,6 +5,7 @@
 #include <map>
 #include <numeric>
 #include <optional>
+#include <set>
 #include <string>
 
 #include "arris/error.h"
@@ -224,16 +225,21 @@ class RoundingMaker {
                           *data_);
     bands_ = std::move(made.bands);
     filled_edges_ = made.filled_edges;
+    // Pieces of an edge are one.
+    std::set<FacePair> whole, parts;
     for (const ClampedPart& e : made.clamped) {
       add_clamped(e);
+      const FacePair faces = std::minmax(regions_.region[e.half_edge / 3],
+                                         regions_.region[welded_.twin[e.half_edge] / 3]);
       if (e.radius > 0) {
         ++clamped_;
-      } else if (e.from == 0 && e.to == 1) {
-        ++left_in_creased_;
       } else {
-        ++sharp_in_part_;
+        (e.from == 0 && e.to == 1 ? whole : parts).insert(faces);
       }
     }
+    left_in_creased_ = whole.size();
+    sharp_in_part_ = std::uint64_t(std::ranges::count_if(
+        parts, [&](const FacePair& faces) { return !whole.contains(faces); }));
   }
 
   void add_clamped(const ClampedPart& part) {
@@ -460,8 +466,8 @@ class RoundingMaker {
          "edge stays sharp: the radius is too large for the faces beside it",
          "edges stay sharp: the radius is too large for the faces beside them");
     note(sharp_in_part_,
-         "part of an edge stays sharp: the radius is too large for the faces beside it",
-         "parts of edges stay sharp: the radius is too large for the faces beside them");
+         "edge stays sharp in part: the radius is too large for the faces beside it",
+         "edges stay sharp in part: the radius is too large for the faces beside them");
     note(clamped_, "edge has a smaller radius: its own is too large for what lies beside it",
          "edges have a smaller radius: their own is too large for what lies beside them");
     note(sharp_by_rule_, "edge stays sharp: its radius is 0",

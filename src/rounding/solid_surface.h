@@ -42,7 +42,7 @@ using FacePair = std::pair<std::uint32_t, std::uint32_t>;  // regions
 // What has less than two radii of material between its sides.
 struct ThinWalls {
   std::vector<std::uint32_t> sides;  // triangles, by their place in the surface; sorted
-  // Faces that meet in an edge as sharp as that: no walls. Each pair in both orders; sorted.
+  // Faces that meet in an edge as sharp as that: balls may roll out of there. Each pair in both orders; sorted.
   std::vector<FacePair> blades;
 };
 

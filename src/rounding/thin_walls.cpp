@@ -15,10 +15,10 @@ constexpr double kTouching = 1.0 / 128, kFinelyTouching = 1e-5, kFar = 2;
 // Cosine of how much faces, or directions to them, turn at least that are opposite: by 143 degrees. A ball between them
 // grows by less than a third of its centre's way.
 constexpr double kOpposite = -0.8;
-// By the way of its centre: slower than this it grows nowhere.
-constexpr double kStuck = 0.05;
+// By the way of its centre: slower than this it grows nowhere; the same between the sides of a blade.
+constexpr double kStuck = 0.05, kStuckInBlade = 1e-4;
 // First radii are halved so often where there is no room.
-constexpr int kHalvings = 10;
+constexpr int kHalvings = 20;
 constexpr int kMostSteps = 400;
 constexpr std::size_t kTrianglesAtOnce = 256;
 
@@ -50,7 +50,7 @@ Vec3d nearest_of_hull(const std::vector<Contact>& contacts) {
     const Vec3d support = std::ranges::min_element(contacts, {}, along)->direction;
     const Vec3d way = support - nearest;
     const double gain = -dot(way, nearest), squared = length_squared(nearest);
-    if (gain <= kNear * squared || squared < kStuck * kStuck) break;
+    if (gain <= kNear * squared || squared < kStuckInBlade * kStuckInBlade) break;
     nearest += way * std::min(gain / length_squared(way), 1.0);
   }
   return nearest;
@@ -118,21 +118,23 @@ class GrowingBall {
     return way;
   }
 
+  // A ball in a blade goes on however slowly.
   [[nodiscard]] bool is_stuck() const {
-    if (length(middle_) < kStuck) return true;
+    const double speed = length(middle_);
+    bool in_blade = false;
     for (const Contact& a : contacts_) {
       for (const Contact& b : contacts_) {
-        if (are_opposite(a, b) && !surface_.is_blade(a.triangle->region, b.triangle->region)) {
-          return true;
-        }
+        if (!are_opposite(a, b)) continue;
+        if (!surface_.is_blade(a.triangle->region, b.triangle->region)) return true;
+        in_blade = true;
       }
     }
-    return false;
+    return speed < (in_blade ? kStuckInBlade : kStuck);
   }
 
   const SolidSurface& surface_;
-  Vec3d center_,
-      middle_;  // of the ball, and of the directions to what it touches: on the way it comes from
+  Vec3d center_;
+  Vec3d middle_;  // of the directions to what it touches
   double full_, radius_ = 0, far_ = 0, touching_ = 0;
   std::vector<Contact> near_, contacts_;
 };
@@ -148,7 +150,6 @@ ThinWalls find_thin_walls(const ThinWallInput& input) {
     input.surface.for_each_cut(
         std::uint32_t(i), normal, input.radius, [&](const SurfaceTriangle& t) {
           if (dot(normal, normal_of(t.region)) > kOpposite) return;
-          if (std::ranges::binary_search(input.sharp, FacePair(face, t.region))) return;
           sides.push_back(std::uint32_t(i));
           sides.push_back(std::uint32_t(&t - triangles.data()));
         });

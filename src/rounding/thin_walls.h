@@ -6,8 +6,8 @@
 // In / Out   coordinates relative to the solid's centre
 // Source     A. Lieutier, "Any open bounded subset of R^n has the same homotopy type as its medial axis" (2004): the
 //            generalized gradient of the distance, and its flow
-// Cost       find_thin_walls: linear in the pairs of triangles within 2 r of each other, on all cores; gets_stuck: some
-//            ten to thirty searches of the surface
+// Cost       find_thin_walls: linear in the pairs of triangles within 2 r of each other, on all cores; gets_stuck: a
+//            search of the surface for each step, some ten of them but where widths are near to two radii
 #pragma once
 
 #include <cstdint>
@@ -26,10 +26,11 @@ struct ThinWallInput {
   double radius;
 };
 
-// Some more triangles than get balls stuck. Sides are about opposite to each other, and do not meet in a sharp edge.
+// Some more triangles than get balls stuck: sides are about opposite to each other, those of blades among them.
 ThinWalls find_thin_walls(const ThinWallInput& input);
 
-// Whether both sides of a wall reach into a ball: none can get stuck on its way there else.
+// Whether both sides of a wall reach into a ball. Balls that get stuck elsewhere, as in a rod of three sides, are of no
+// account: faces of which nothing is left stay in another way (SolidSurface::is_firm).
 bool is_between_walls(const SolidSurface& surface, Vec3d center, double radius);
 // From a place of a face, with the face's normal.
 bool gets_stuck(const SolidSurface& surface, Vec3d x, Vec3d normal, std::uint32_t face,
