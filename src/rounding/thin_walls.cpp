@@ -147,12 +147,12 @@ ThinWalls find_thin_walls(const ThinWallInput& input) {
   const auto find = [&](std::size_t i, std::vector<std::uint32_t>& sides) {
     const std::uint32_t face = triangles[i].region;
     const Vec3d normal = normal_of(face);
-    input.surface.for_each_cut(
-        std::uint32_t(i), normal, input.radius, [&](const SurfaceTriangle& t) {
-          if (dot(normal, normal_of(t.region)) > kOpposite) return;
-          sides.push_back(std::uint32_t(i));
-          sides.push_back(std::uint32_t(&t - triangles.data()));
-        });
+    input.surface.for_each_cut(std::uint32_t(i), normal, input.radius,
+                               [&](const SurfaceTriangle& t) {
+                                 if (dot(normal, normal_of(t.region)) > kOpposite) return;
+                                 sides.push_back(std::uint32_t(i));
+                                 sides.push_back(std::uint32_t(&t - triangles.data()));
+                               });
   };
   ThinWalls walls{parallel_collect<std::uint32_t>(triangles.size(), kTrianglesAtOnce, find), {}};
   std::ranges::sort(walls.sides);
