@@ -8,7 +8,7 @@ namespace arris {
 namespace {
 
 // Relative to the radius: cells are no larger than this, if they may be so many; and what positions are wrong by.
-constexpr double kCell = 0.5, kSlack = 1e-3;
+constexpr double kCell = 0.5, kPositionError = 1e-3;
 constexpr std::uint32_t kMostCells = 64;
 // Triangles with sides of fewer cells have none.
 constexpr std::uint32_t kLeastCells = 4;
@@ -42,7 +42,8 @@ class GridMaker {
                          along_v_ * (double(j) / cells_ + 0.5 * part);
     const double half =
         0.5 * part * std::max(length(along_u_ + along_v_), length(along_u_ - along_v_));
-    if (half < kLarge * r_ && !surface_.is_near(middle, (1 + kSlack) * r_ + half, region_)) {
+    if (half < kLarge * r_ &&
+        !surface_.is_near(middle, (1 + kPositionError) * r_ + half, region_)) {
       const std::uint64_t bits =
           (extent == 64 ? ~std::uint64_t{0} : (std::uint64_t{1} << extent) - 1);
       for (std::uint32_t k = i; k < i + extent; ++k) rows_[k] |= bits << j;

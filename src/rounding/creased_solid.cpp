@@ -33,9 +33,9 @@ constexpr double kOnSurface = 1e-4;
 // Of a way that should lie in a void: how many radii beneath the surface it may not be, and by how many it is looked
 // at; and about a place where it meets material, what shows how this lies.
 constexpr double kInMaterial = 0.02, kWayAtOnce = 0.1, kBesides = 0.01;
-constexpr int kLeastSteps = 4, kMostSteps = 64;
+constexpr int kLeastWaySteps = 4, kMostWaySteps = 64;
 // Relative to the radius: steps in which edges are looked at, and how far below.
-constexpr double kEdgeStep = 0.25, kBeneathEdge = 1e-3;
+constexpr double kEdgeStep = 0.25, kBelowEdge = 1e-3;
 constexpr int kMostEdgeSteps = 256;
 // More functions than these cost more than asking the surface.
 constexpr std::size_t kMostDepths = 8;
@@ -181,7 +181,7 @@ std::optional<PipeHit> CreasedSolid::first_material(Vec3d x, Vec3d direction,
     return std::nullopt;
   }
   const double speed = length(direction), most = kWayAtOnce * radius / speed;
-  const int steps = std::clamp(int(std::ceil(end / most)), kLeastSteps, kMostSteps);
+  const int steps = std::clamp(int(std::ceil(end / most)), kLeastWaySteps, kMostWaySteps);
   const auto is_material = [&](Vec3d y) { return is_beneath(y, kInMaterial); };
   for (int i = 1; i < steps; ++i) {
     const double t = end * i / steps;
@@ -219,7 +219,7 @@ std::vector<std::pair<double, double>> CreasedSolid::find_sharp_parts(const Face
     const Vec3d x = edge.p0 + (edge.p1 - edge.p0) * u;
     const double r = field.at(x);
     return r <= tolerance || (may_stay && is_between_walls(surface, x - down * r, 2 * r) &&
-                              gets_stuck(surface, x - down * (kBeneathEdge * r), r - tolerance));
+                              gets_stuck(surface, x - down * (kBelowEdge * r), r - tolerance));
   };
   const double extent = length(edge.p1 - edge.p0);
   const int steps = std::clamp(int(std::ceil(extent / (kEdgeStep * radius))), 2, kMostEdgeSteps);

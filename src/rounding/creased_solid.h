@@ -3,7 +3,7 @@
 //            the radius from there (thin_walls.h); a ray that is in the void between the sharp and the rounded surface
 //            meets a pipe (crease_pipes.h), or material that stays, before it leaves the sharp solid, or passes
 // In / Out   coordinates relative to the solid's centre
-// Guarantee  the surface is that of all balls of the radius that fit, and of what stays (tests/rounding/creased_test.cpp)
+// Guarantee  the surface is that of all balls of the radius that fit (tests/rounding/creased_test.cpp) and what stays
 #pragma once
 
 #include <algorithm>

@@ -11,16 +11,16 @@ namespace {
 
 // Relative to its radius: what is nearer than this to the ball it touches; the same where it seems stuck; and how far
 // from its centre other things are looked for.
-constexpr double kTouching = 1.0 / 128, kFinelyTouching = 1e-5, kFar = 2;
+constexpr double kTouches = 1.0 / 128, kTouchesFinely = 1e-5, kFar = 2;
 // Cosine of how much faces, or directions to them, turn at least that are opposite: by 143 degrees. A ball between them
 // grows by less than a third of its centre's way.
 constexpr double kOpposite = -0.8;
 // By the way of its centre: slower than this it grows nowhere; the same between the sides of a blade.
 constexpr double kStuck = 0.05, kStuckInBlade = 1e-4;
 // First radii are halved so often where there is no room.
-constexpr int kHalvings = 20;
-constexpr int kMostSteps = 400;
-constexpr std::size_t kTrianglesAtOnce = 256;
+constexpr int kFirstHalvings = 20;
+constexpr int kMostGrowth = 400;
+constexpr std::size_t kSidesAtOnce = 256;
 
 // Where a ball touches the surface, or nearly.
 struct Contact {
@@ -63,9 +63,9 @@ class GrowingBall {
 
   bool gets_stuck() {
     find_near(full_);
-    for (int i = 0; i < kMostSteps && radius_ < full_; ++i) {
-      take_contacts(kTouching);
-      if (is_stuck()) take_contacts(kFinelyTouching);
+    for (int i = 0; i < kMostGrowth && radius_ < full_; ++i) {
+      take_contacts(kTouches);
+      if (is_stuck()) take_contacts(kTouchesFinely);
       if (is_stuck()) return true;
       const double speed = length(middle_);
       const double step = std::max(way_until_touch(speed), 0.5 * touching_ * radius_);
@@ -154,7 +154,7 @@ ThinWalls find_thin_walls(const ThinWallInput& input) {
                                  sides.push_back(std::uint32_t(&t - triangles.data()));
                                });
   };
-  ThinWalls walls{parallel_collect<std::uint32_t>(triangles.size(), kTrianglesAtOnce, find), {}};
+  ThinWalls walls{parallel_collect<std::uint32_t>(triangles.size(), kSidesAtOnce, find), {}};
   std::ranges::sort(walls.sides);
   walls.sides.erase(std::unique(walls.sides.begin(), walls.sides.end()), walls.sides.end());
   for (const FacePair& pair : input.sharp) {
@@ -187,9 +187,9 @@ bool gets_stuck(const SolidSurface& surface, Vec3d center, double radius) {
 bool gets_stuck(const SolidSurface& surface, Vec3d x, Vec3d normal, std::uint32_t face,
                 double radius) {
   double r = radius;
-  for (int i = 0; i < kHalvings; ++i) {
+  for (int i = 0; i < kFirstHalvings; ++i) {
     r *= 0.5;
-    if (!surface.is_near(x - normal * r, (1 - kTouching) * r, face)) break;
+    if (!surface.is_near(x - normal * r, (1 - kTouches) * r, face)) break;
   }
   return gets_stuck(surface, x - normal * r, radius);
 }
