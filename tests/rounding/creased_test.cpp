@@ -22,7 +22,7 @@ TEST(Creased, rays_agree_with_the_balls_that_fit) {
     BallShooter shooter(c.mesh, c.radius, 5);
     ASSERT_FALSE(shooter.rounding().data().creased.empty());
     BallTally tally;
-    shooter.shoot(160, tally);
+    shooter.shoot(200, tally);
     EXPECT_GT(tally.moved, 30);
     all.rays += tally.rays;
     all.wrong += tally.wrong;
