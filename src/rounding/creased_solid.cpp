@@ -34,8 +34,8 @@ constexpr double kOnSurface = 1e-4;
 // at; and about a place where it meets material, what shows how this lies.
 constexpr double kInMaterial = 0.02, kWayAtOnce = 0.1, kBesides = 0.01;
 constexpr int kLeastWaySteps = 4, kMostWaySteps = 64;
-// Relative to the radius: steps in which edges are looked at, and how far below.
-constexpr double kEdgeStep = 0.25, kBelowEdge = 1e-3;
+// Relative to the radius: steps in which edges are looked at.
+constexpr double kEdgeStep = 0.25;
 constexpr int kMostEdgeSteps = 256;
 // More functions than these cost more than asking the surface.
 constexpr std::size_t kMostDepths = 8;
@@ -214,12 +214,12 @@ std::vector<std::pair<double, double>> CreasedSolid::find_sharp_parts(const Face
   const bool may_stay = is_between_walls(surface, (edge.p0 + edge.p1) * 0.5,
                                          2 * radius + 0.5 * length(edge.p1 - edge.p0));
   if (field.is_uniform() && !may_stay) return parts;
-  const Vec3d down = normalize(edge.normal0 + edge.normal1);
+  const Vec3d inward = -normalize(edge.normal0 + edge.normal1);
   const auto is_sharp = [&](double u) {
     const Vec3d x = edge.p0 + (edge.p1 - edge.p0) * u;
     const double r = field.at(x);
-    return r <= tolerance || (may_stay && is_between_walls(surface, x - down * r, 2 * r) &&
-                              gets_stuck(surface, x - down * (kBelowEdge * r), r - tolerance));
+    return r <= tolerance || (may_stay && is_between_walls(surface, x + inward * r, 2 * r) &&
+                              gets_stuck_at_edge(surface, x, inward, r - tolerance));
   };
   const double extent = length(edge.p1 - edge.p0);
   const int steps = std::clamp(int(std::ceil(extent / (kEdgeStep * radius))), 2, kMostEdgeSteps);

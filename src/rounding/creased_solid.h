@@ -66,7 +66,7 @@ struct CreasedSolid {
     return surface.bytes() + pipes.bytes() + field.bytes() + clear.bytes();
   }
 
-  // Whether rounding leaves all that it should take away at a place, for a ball of the radius that it can't touch.
+  // Whether a place of a face that no ball of the radius r can touch stays all the same.
   [[nodiscard]] bool stays(Vec3d x, Vec3d normal, std::uint32_t region, double r) const;
   // Where a way through the void comes to material that stays; nothing: nowhere before the pipe, or the exit.
   [[nodiscard]] std::optional<PipeHit> first_material(Vec3d x, Vec3d direction,

@@ -86,10 +86,9 @@ class CreasedMaker {
     solid.surface.set_firm(faces_that_vanish(solid));
     if (in_.is_outside && solid.surface.has_firm()) return std::nullopt;
     std::vector<PlainCrease> plain = find_plain_creases(solid, in_.regions.planes);
-    std::vector<ClampedPart> clamped;
-    for (const VariedCreases::Edge& e : found.smaller) clamped.push_back({e.half_edge, e.radius});
-    append_sharp_parts(solid, clamped);
-    return MadeCreased{std::move(solid), std::move(bands), std::move(clamped), std::move(plain)};
+    append_sharp_parts(solid, found.clamped);
+    return MadeCreased{std::move(solid), std::move(bands), std::move(found.clamped),
+                       std::move(plain)};
   }
 
  private:
@@ -146,9 +145,9 @@ class CreasedMaker {
     }
   }
 
-  // Of edges that have no room for the radius, and are not yet among what is clamped.
+  // Of edges that have no room for the radius, and are not yet among what is clamped. What has no radius because it
+  // is beside an edge without one is as asked.
   void append_sharp_parts(const CreasedSolid& solid, std::vector<ClampedPart>& clamped) const {
-    if (!solid.surface.has_walls() && !solid.surface.has_firm()) return;
     std::vector<std::uint32_t> known, edges;
     for (const ClampedPart& part : clamped) {
       if (part.radius == 0) known.push_back(part.half_edge);
@@ -170,8 +169,10 @@ class CreasedMaker {
                               in_.regions.planes[other].normal,
                               face,
                               other};
-          for (const auto& [from, to] : solid.find_sharp_parts(edge))
-            list.push_back({h, 0, from, to});
+          for (const auto& [from, to] : solid.find_sharp_parts(edge)) {
+            const Vec3d middle = edge.p0 + (edge.p1 - edge.p0) * (0.5 * (from + to));
+            if (solid.field.at(middle) > solid.tolerance) list.push_back({h, 0, from, to});
+          }
         });
     clamped.insert(clamped.end(), parts.begin(), parts.end());
   }

@@ -29,13 +29,6 @@ struct CreasedInput {
   bool is_outside = false;          // of the space outside (outside_mesh.h): flat faces alone
 };
 
-// A part of an edge that has a smaller radius than it should, or stays sharp: there is no room.
-struct ClampedPart {
-  std::uint32_t half_edge;
-  double radius;
-  double from = 0, to = 1;  // fractions of it
-};
-
 struct MadeCreased {
   CreasedSolid solid;
   std::vector<TriangleBand> bands;

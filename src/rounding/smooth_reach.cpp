@@ -1,7 +1,6 @@
 #include "rounding/smooth_reach.h"
 
 #include <algorithm>
-#include <array>
 
 #include "base/parallel_collect.h"
 

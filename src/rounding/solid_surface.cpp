@@ -103,7 +103,6 @@ bool SolidSurface::is_near(Vec3d x, double distance, std::uint32_t but_region) c
 
 void SolidSurface::set_walls(ThinWalls walls) {
   blades_ = std::move(walls.blades);
-  has_walls_ = !walls.sides.empty();
   wall_tree_ = BoxTree(boxes_of(triangles_, walls.sides, reach_));
 }
 

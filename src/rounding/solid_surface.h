@@ -64,7 +64,6 @@ class SolidSurface {
   [[nodiscard]] bool is_blade(std::uint32_t face, std::uint32_t other) const {
     return std::ranges::binary_search(blades_, FacePair(face, other));
   }
-  [[nodiscard]] bool has_walls() const { return has_walls_; }
   [[nodiscard]] bool is_firm(std::uint32_t region) const {
     return std::ranges::binary_search(firm_, region);
   }
@@ -111,7 +110,6 @@ class SolidSurface {
   std::vector<std::uint32_t> firm_;
   BoxTree tree_, wall_tree_{{}};
   double reach_;
-  bool has_walls_ = false;
 };
 
 template <class Visit>

@@ -19,6 +19,8 @@ constexpr double kOpposite = -0.8;
 constexpr double kStuck = 0.05, kStuckInBlade = 1e-4;
 // First radii are halved so often where there is no room.
 constexpr int kFirstHalvings = 20;
+// Of the radius: so far below an edge a ball begins to grow.
+constexpr double kBelowEdge = 1e-3;
 constexpr int kMostGrowth = 400;
 constexpr std::size_t kSidesAtOnce = 256;
 
@@ -165,23 +167,15 @@ ThinWalls find_thin_walls(const ThinWallInput& input) {
 }
 
 bool is_between_walls(const SolidSurface& surface, Vec3d center, double radius) {
-  if (!surface.has_walls()) return false;
   const Vec3d reach(radius);
-  std::vector<Contact> sides;
+  std::vector<Vec3d> normals;
   surface.for_each_wall_near(center - reach, center + reach, [&](const SurfaceTriangle& t) {
     if (is_plainly_beyond(center, t, radius)) return;
-    const Vec3d away = nearest_on_triangle(center, t) - center;
-    const double distance = length(away);
-    if (distance < radius) sides.push_back({away, distance, &t, normal_of(t)});
+    if (length(nearest_on_triangle(center, t) - center) < radius) normals.push_back(normal_of(t));
   });
-  return std::ranges::any_of(sides, [&](const Contact& a) {
-    return std::ranges::any_of(
-        sides, [&](const Contact& b) { return dot(a.normal, b.normal) < kOpposite; });
+  return std::ranges::any_of(normals, [&](Vec3d a) {
+    return std::ranges::any_of(normals, [&](Vec3d b) { return dot(a, b) < kOpposite; });
   });
-}
-
-bool gets_stuck(const SolidSurface& surface, Vec3d center, double radius) {
-  return GrowingBall(surface, center, radius).gets_stuck();
 }
 
 bool gets_stuck(const SolidSurface& surface, Vec3d x, Vec3d normal, std::uint32_t face,
@@ -191,7 +185,11 @@ bool gets_stuck(const SolidSurface& surface, Vec3d x, Vec3d normal, std::uint32_
     r *= 0.5;
     if (!surface.is_near(x - normal * r, (1 - kTouches) * r, face)) break;
   }
-  return gets_stuck(surface, x - normal * r, radius);
+  return GrowingBall(surface, x - normal * r, radius).gets_stuck();
+}
+
+bool gets_stuck_at_edge(const SolidSurface& surface, Vec3d x, Vec3d inward, double radius) {
+  return GrowingBall(surface, x + inward * (kBelowEdge * radius), radius).gets_stuck();
 }
 
 }  // namespace arris

@@ -35,7 +35,7 @@ bool is_between_walls(const SolidSurface& surface, Vec3d center, double radius);
 // From a place of a face, with the face's normal.
 bool gets_stuck(const SolidSurface& surface, Vec3d x, Vec3d normal, std::uint32_t face,
                 double radius);
-// From a centre within the solid.
-bool gets_stuck(const SolidSurface& surface, Vec3d center, double radius);
+// From a place of a convex edge, with the direction inward between its faces.
+bool gets_stuck_at_edge(const SolidSurface& surface, Vec3d x, Vec3d inward, double radius);
 
 }  // namespace arris

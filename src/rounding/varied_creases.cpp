@@ -24,8 +24,6 @@ constexpr double kTransition = 2;
 constexpr double kMargin = 0.25;
 // A radius is halved so often where there is no room.
 constexpr int kHalvings = 3;
-// Of the radius: a ball this small begins to grow at an edge.
-constexpr double kBeneathEdge = 1e-3;
 // In radii: steps in which a curve is looked at; and most of them.
 constexpr double kStep = 0.25;
 constexpr int kMostSteps = 2000;
@@ -62,7 +60,7 @@ class VariedFinder {
       if (profiles_[i].knots.size() > 2) add_transitions(edges_[i], profiles_[i]);
     }
     for (const Edge& e : edges_) {
-      if (e.radius < e.asked) out_.smaller.push_back({e.half_edge, e.radius});
+      if (e.radius < e.asked) out_.clamped.push_back({e.half_edge, e.radius});
     }
     return std::move(out_);
   }
@@ -200,8 +198,9 @@ class VariedFinder {
   // Of an edge of one radius: it stays sharp.
   [[nodiscard]] bool has_no_room(const Edge& e) {
     if (!std::ranges::binary_search(class_of(e.radius).creases.missing, e.faces)) return false;
-    const RadiusKnot middle{0.5 * e.length, kBeneathEdge * e.radius};
-    return gets_stuck(in_.surface, center_at(e, middle), e.radius);
+    const Vec3d middle = e.p0 + e.direction * (0.5 * e.length);
+    const Vec3d inward = -(normal_of(e.faces.first) + normal_of(e.faces.second));
+    return gets_stuck_at_edge(in_.surface, middle, normalize(inward), e.radius);
   }
 
   // Whether the edge's radius and its transitions have room.
@@ -264,10 +263,13 @@ class VariedFinder {
     return profile;
   }
 
+  [[nodiscard]] Vec3d normal_of(std::uint32_t face) const {
+    return in_.regions.planes[face].normal;
+  }
+
   // The centre of the ball that touches both faces at a place of the edge.
   [[nodiscard]] Vec3d center_at(const Edge& e, RadiusKnot at) const {
-    const Vec3d a = in_.regions.planes[e.faces.first].normal;
-    const Vec3d b = in_.regions.planes[e.faces.second].normal;
+    const Vec3d a = normal_of(e.faces.first), b = normal_of(e.faces.second);
     return e.p0 + e.direction * at.v - (a + b) * (at.radius / (1 + dot(a, b)));
   }
 
@@ -311,7 +313,7 @@ class VariedFinder {
       if (radius == 0 || std::min(v, e.length - v) < radius) continue;
       const Vec3d c = center_at(e, {v, radius});
       for (const std::uint32_t face : {e.faces.first, e.faces.second}) {
-        const Vec3d touching = c + in_.regions.planes[face].normal * radius;
+        const Vec3d touching = c + normal_of(face) * radius;
         if (std::abs(out_.field.at(touching) - radius) > kHidden * radius) return true;
       }
     }
@@ -335,7 +337,7 @@ class VariedFinder {
     for (const std::uint32_t face : {c.face_a, c.face_b}) {
       if (face == kNone) continue;
       any = true;
-      if (!is_same(x + in_.regions.planes[face].normal * radius)) return false;
+      if (!is_same(x + normal_of(face) * radius)) return false;
     }
     return any || is_same(x);
   }

@@ -25,14 +25,17 @@ struct VariedInput {
   bool clamp = false;             // edges without room take a smaller radius, else they stay sharp
 };
 
+// A part of an edge that has a smaller radius than it should, or stays sharp: there is no room.
+struct ClampedPart {
+  std::uint32_t half_edge;
+  double radius;
+  double from = 0, to = 1;  // fractions of it
+};
+
 struct VariedCreases {
-  struct Edge {
-    std::uint32_t half_edge;
-    double radius;
-  };
   std::vector<CreaseCurve> curves;
   RadiusField field{0};
-  std::vector<Edge> smaller;  // have a smaller radius than they should
+  std::vector<ClampedPart> clamped;  // whole edges
 };
 
 VariedCreases find_varied_creases(const VariedInput& input);

@@ -122,14 +122,14 @@ class Comparison {
     double apart = std::abs(place(a) - place(b)) * length(ray.direction);
     double most = 1e-5 * r_;
     if (a.outcome == b.outcome && a.outcome == Resolution::Outcome::moved) {
-      // Creases lie where they should by a tolerance, so that one may hide another's pipe by as much, up to where
-      // the two are that far apart.
+      // Creases lie where they should by a tolerance, so that one may hide another's pipe by as much. Where a ball
+      // at a place s beyond a cylinder's end lies as high above it, s² / 2 r is that, and s / r their normals' angle.
       apart *= std::abs(dot(a.hit.normal, ray.direction)) / length(ray.direction);
       most += tolerance();
     }
     if (!(apart < most)) return false;
     return a.outcome != b.outcome || a.outcome == Resolution::Outcome::kept ||
-           dot(a.hit.normal, b.hit.normal) > 1 - 2 * most / r_;
+           dot(a.hit.normal, b.hit.normal) > 1 - most / r_;
   }
 
   MeshView mesh_;
