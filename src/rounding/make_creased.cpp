@@ -145,8 +145,7 @@ class CreasedMaker {
     }
   }
 
-  // Of edges that have no room for the radius, and are not yet among what is clamped. What has no radius because it
-  // is beside an edge without one is as asked.
+  // Of edges that have no room for the radius, and are not yet among what is clamped.
   void append_sharp_parts(const CreasedSolid& solid, std::vector<ClampedPart>& clamped) const {
     std::vector<std::uint32_t> known, edges;
     for (const ClampedPart& part : clamped) {
@@ -170,8 +169,7 @@ class CreasedMaker {
                               face,
                               other};
           for (const auto& [from, to] : solid.find_sharp_parts(edge)) {
-            const Vec3d middle = edge.p0 + (edge.p1 - edge.p0) * (0.5 * (from + to));
-            if (solid.field.at(middle) > solid.tolerance) list.push_back({h, 0, from, to});
+            list.push_back({h, 0, from, to});
           }
         });
     clamped.insert(clamped.end(), parts.begin(), parts.end());

@@ -244,6 +244,53 @@ TEST(VariedRadii, edges_without_radius_stay_sharp_between_their_corners) {
   EXPECT_EQ(corner->feature, Feature::corner);
 }
 
+// Pieces of a rim are too short for transitions: one that is smaller makes all of them so.
+TEST(VariedRadii, pieces_of_a_rim_share_the_smallest_radius) {
+  constexpr int kPieces = 48;
+  Outline circle;
+  for (int i = 0; i < kPieces; ++i) {
+    const double angle = 2 * kPi * i / kPieces;
+    circle.push_back({2 * std::cos(angle), 2 * std::sin(angle)});
+  }
+  const TriangleSoup mesh = prism_over("drum", circle, {1, 1, 0});
+  RoundingOptions options;
+  options.radius = 0.2;
+  EdgeRule rule;
+  rule.radius = 0.1;
+  const auto at = [&](std::size_t i) { return Vec3d(mesh.positions[kPieces + i]); };
+  rule.segments = {{at(20), at(21)}};
+  options.rules = {rule};
+  const Rounding rounding = make_rounding(mesh.view(), options, mesh.name);
+  int smaller = 0;
+  for (const ClampedEdge& edge : rounding.report().clamped) {
+    EXPECT_EQ(edge.radius, 0.1);
+    smaller += std::min(edge.from.z, edge.to.z) > 0.5 ? 1 : 0;
+  }
+  EXPECT_EQ(smaller, kPieces - 1);
+  // In the middle of the opposite piece.
+  const Vec3d middle = (at(44) + at(45)) * 0.5;
+  const Vec3d d = normalize(Vec3d(-middle.x, -middle.y, -length(Vec3d(middle.x, middle.y, 0))));
+  const auto hit = trace({middle - d * 5.0, d}, {mesh.view(), &rounding});
+  ASSERT_TRUE(hit);
+  EXPECT_NEAR(hit->t, 5 + 0.1 * (std::sqrt(2.0) - 1), 1e-4);
+}
+
+// The corners of edges without a radius have none: their other edges begin there as asked, not for want of room.
+TEST(VariedRadii, what_a_rule_leaves_sharp_is_not_listed_as_without_room) {
+  const TriangleSoup mesh = block_with_boss("thin boss", 0.1, 0.1, 0.9);
+  RoundingOptions options;
+  options.radius = 0.15;
+  EdgeRule rule;
+  rule.radius = 0;
+  rule.box = {Vec3d(-3, -3, -1.6), Vec3d(3, 3, -1.4)};
+  options.rules = {rule};
+  const Rounding rounding = make_rounding(mesh.view(), options, mesh.name);
+  EXPECT_EQ(rounding.report().clamped.size(), 8U);
+  for (const ClampedEdge& edge : rounding.report().clamped) {
+    EXPECT_GT(std::max(edge.from.z, edge.to.z), 0.89);
+  }
+}
+
 // A chamfer's edges turn less and are nearer to where the large ball touches than its own edge.
 TEST(VariedRadii, large_radii_beside_edges_that_turn_less_leave_no_holes) {
   const TriangleSoup mesh =
