@@ -124,15 +124,14 @@ class CreasedHit {
   }
 
   [[nodiscard]] Resolution out_of_void(const Ray& ray, bool covered) const {
+    const Resolution passed = make(Resolution::Outcome::passed, at_.t, normal_, Feature::face);
+    // A ray from the face, or from a fillet that has no thickness there, may start behind it.
+    if (at_.t * at_.scale <= inner_->tolerance) return passed;
     const Vec3d origin = ray.origin - solid_.center;
     if (const auto met = inner_->cross_void(origin, at_.direction).met) {
       return make(Resolution::Outcome::moved, met->t / at_.scale, met->normal, feature_of(*met));
     }
-    // Where the fillet has no thickness, a ray from its surface may start behind the face.
-    if (covered && at_.t * at_.scale > inner_->tolerance) {
-      return make(Resolution::Outcome::moved, at_.t, -normal_, Feature::fillet);
-    }
-    return make(Resolution::Outcome::passed, at_.t, normal_, Feature::face);
+    return covered ? make(Resolution::Outcome::moved, at_.t, -normal_, Feature::fillet) : passed;
   }
 
   // Beyond the void there may be a fillet.

@@ -1,6 +1,7 @@
 // creased_test.cpp — solids with concave edges against the definition of rounding
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <string>
 #include <vector>
 
@@ -53,6 +54,33 @@ TEST(Creased, rays_that_leave_the_surface_do_not_meet_it_where_they_start) {
     }
     EXPECT_GT(left, 100);
   }
+}
+
+// By rounding errors rays that leave a face start on either side of it: where they go must not depend on that.
+TEST(Creased, rays_that_start_just_beneath_a_face_go_where_others_go_from_above) {
+  std::vector<CreasedCase> cases = make_creased_cases();
+  cases.push_back({block_with_boss("boss as wide as the ball", 0.5, 0.5, 0.8), 0.4});
+  int started = 0, apart = 0;
+  for (const CreasedCase& c : cases) {
+    SCOPED_TRACE(c.mesh.name);
+    BallShooter shooter(c.mesh, c.radius, 11);
+    const RoundedMesh object{c.mesh.view(), &shooter.rounding()};
+    for (int i = 0; i < 1000; ++i) {
+      const Ray ray = shooter.make_ray(i);
+      const auto hit = trace(ray, object);
+      if (!hit || hit->feature != Feature::face || dot(ray.direction, hit->normal) > -0.1) continue;
+      const Vec3d x = ray.origin + ray.direction * hit->t, off = hit->normal * (1e-8 * c.radius);
+      const Vec3d away = ray.direction - hit->normal * (2 * dot(ray.direction, hit->normal));
+      const auto above = trace({x + off, away}, object, RayStart::outside);
+      const auto beneath = trace({x - off, away}, object, RayStart::outside);
+      const bool is_same = above.has_value() == beneath.has_value() &&
+                           (!above || std::abs(above->t - beneath->t) < 1e-3 * c.radius);
+      ++started;
+      apart += is_same ? 0 : 1;
+    }
+  }
+  EXPECT_GT(started, 2000);
+  EXPECT_EQ(apart, 0);
 }
 
 }  // namespace
