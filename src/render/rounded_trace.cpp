@@ -124,8 +124,11 @@ Verdict judge(const RoundedGeometry& g, const TraceRay& ray, const Candidate& c)
     }
     if (start == RayStart::outside && solid.filled == kNone) start = RayStart::unknown;
   }
-  // From inside, a kept hit may still be that of a ray that starts in the void. From outside, it is not judged.
-  const bool settled = !verdict.entering && (start == RayStart::inside || !solid.exact);
+  // From inside, a kept hit may still be that of a ray that starts in the void: of an exact solid, or beside a fillet's
+  // end, whose side stands on the sharp face. From outside, it is not judged.
+  const bool may_start_in_void =
+      solid.exact || (start == RayStart::outside && solid.filled != kNone);
+  const bool settled = !verdict.entering && (start == RayStart::inside || !may_start_in_void);
   if (settled && g.is_kept(c.triangle, c.u, c.v)) return verdict;
   const Resolution r = g.rounding->resolve(local, {c.triangle, c.u, c.v, c.t}, start);
   verdict.outcome = r.outcome;

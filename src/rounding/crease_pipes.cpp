@@ -109,6 +109,40 @@ std::optional<Span> meet_balls(Vec3d origin, Vec3d direction, const Segment& seg
   return meet_capsule(origin, direction, segment, segment.radius + bulge);
 }
 
+// A ray, and balls around an arc.
+class ArcWay {
+ public:
+  ArcWay(const ShortArc& arc, const Ray& ray, double radius)
+      : arc_(arc),
+        origin_(ray.origin),
+        speed_(length(ray.direction)),
+        direction_(ray.direction / speed_),
+        r_(radius) {}
+
+  // Between two t of the ray: where it first is within a ball.
+  [[nodiscard]] std::optional<PipeHit> enter(double from, double to) const {
+    const auto met = arc_.enter(origin_, direction_, from * speed_, to * speed_, r_);
+    if (!met) return std::nullopt;
+    const Vec3d away = origin_ + direction_ * met->along - arc_.at(met->turn);
+    return PipeHit{met->along / speed_, normalize(away), true};
+  }
+  // From one t within balls: where it leaves them.
+  [[nodiscard]] double leave(double from) const {
+    return arc_.leave(origin_, direction_, from * speed_, r_).along / speed_;
+  }
+  // So far beyond a t that it is another place.
+  [[nodiscard]] double beyond(double t) const { return t + kApart * r_ / speed_; }
+
+ private:
+  static constexpr double kApart = 1e-6;
+
+  const ShortArc& arc_;
+  Vec3d origin_;
+  double speed_;
+  Vec3d direction_;
+  double r_;
+};
+
 }  // namespace
 
 CreasePipes::Part CreasePipes::make_part(const CreaseCurve& curve) {
@@ -169,42 +203,6 @@ CreasePipes::Foot CreasePipes::foot_on(const Part& part, Vec3d x) {
   return {part.curve.at(u), u};
 }
 
-// From one t of a ray towards another, either way: where it first comes within r of the arc.
-std::optional<CreasePipes::ArcEntry> CreasePipes::step_to_arc(const Part& part, const Ray& ray,
-                                                              double from, double to) {
-  const ShortArc& arc = part.arc;
-  const double r = part.radius;
-  constexpr int kMostSteps = 200;
-  constexpr double kSafePart = 0.5;  // of the longest safe step
-  const double way = to < from ? -1 : 1;
-  const double unit = way / length(ray.direction);
-  const Vec3d direction = ray.direction * unit;
-  double t = from, before = from;
-  double left_before = 0;
-  Turn turn;
-  for (int step = 0; step <= kMostSteps; ++step) {
-    const Vec3d x = ray.origin + ray.direction * t;
-    turn = arc.nearest(x, turn);
-    const Vec3d away = x - arc.at(turn);
-    const double distance = length(away), left = distance - r;
-    if (std::abs(left) <= 1e-9 * r || (left < 0 && step == 0)) return ArcEntry{t, turn};
-    if (left < 0) {
-      // Too far, as the arc bends towards the ray: back along the chord.
-      t = before + (t - before) * (left_before / (left_before - left));
-      continue;
-    }
-    before = t;
-    left_before = left;
-    const double fall = -dot(away, direction) / distance;
-    const double safe = std::max(left, kSafePart * r * fall);
-    t += unit * (fall > 0 ? std::min(left / fall, safe) : left);
-    if ((t - to) * way <= 0) continue;
-    if (before == to) break;
-    t = to;
-  }
-  return std::nullopt;
-}
-
 std::optional<PipeHit> CreasePipes::first_entry(Vec3d origin, Vec3d direction, double end) const {
   std::optional<PipeHit> best;
   tree_.for_each_along(origin, direction, 0, end, [&](std::uint32_t i) {
@@ -214,23 +212,24 @@ std::optional<PipeHit> CreasePipes::first_entry(Vec3d origin, Vec3d direction, d
         part.bulge);
     if (!span || span->t1 < 0 || span->t0 > end) return;
     double t = std::max(span->t0, 0.0);
-    Vec3d foot;
-    bool is_inner = false;
-    if (part.curve.is_line) {
-      const Vec3d x = origin + direction * t - part.p0;
-      double along = dot(x, part.axis);
-      if (part.growth != 0) {
-        along = nearest_ball(along, length(x - part.axis * along), part.growth);
-      }
-      foot = part.p0 + part.axis * std::clamp(along, 0.0, part.length);
-      is_inner = along > 0 && along < part.length;
-    } else {
-      const std::optional<ArcEntry> met =
-          step_to_arc(part, {origin, direction}, t, std::min(span->t1, end));
-      if (!met) return;
-      t = met->t;
-      foot = part.arc.at(met->turn);
+    if (!part.curve.is_line) {
+      const ArcWay way(part.arc, {origin, direction}, part.radius);
+      const double last = std::min(span->t1, end);
+      std::optional<PipeHit> met = way.enter(t, last);
+      // One that leaves may come back where the arc bends.
+      if (met && dot(met->normal, direction) >= 0) met = way.enter(way.beyond(met->t), last);
+      if (!met || dot(met->normal, direction) >= 0) return;
+      end = met->t;
+      best = met;
+      return;
     }
+    const Vec3d x = origin + direction * t - part.p0;
+    double along = dot(x, part.axis);
+    if (part.growth != 0) {
+      along = nearest_ball(along, length(x - part.axis * along), part.growth);
+    }
+    const Vec3d foot = part.p0 + part.axis * std::clamp(along, 0.0, part.length);
+    const bool is_inner = along > 0 && along < part.length;
     if (t > end) return;
     const Vec3d normal = normalize(origin + direction * t - foot);
     if (dot(normal, direction) >= 0) return;
@@ -240,8 +239,8 @@ std::optional<PipeHit> CreasePipes::first_entry(Vec3d origin, Vec3d direction, d
   return best;
 }
 
-std::optional<PipeSpan> CreasePipes::span_of(std::uint32_t index, Vec3d origin,
-                                             Vec3d direction) const {
+std::optional<PipeSpan> CreasePipes::span_of(std::uint32_t index, Vec3d origin, Vec3d direction,
+                                             double after) const {
   const Part& part = parts_[index];
   const std::optional<Span> span =
       meet_balls(origin, direction,
@@ -252,13 +251,14 @@ std::optional<PipeSpan> CreasePipes::span_of(std::uint32_t index, Vec3d origin,
     const Foot foot = foot_on(part, x);
     return PipePlace{t, foot.u, normalize(x - foot.point)};
   };
-  if (part.curve.is_line) return PipeSpan{place_at(span->t0), place_at(span->t1)};
-  const Ray ray{origin, direction};
-  const std::optional<ArcEntry> in = step_to_arc(part, ray, span->t0, span->t1);
+  if (part.curve.is_line) {
+    if (span->t1 <= after) return std::nullopt;
+    return PipeSpan{place_at(span->t0), place_at(span->t1)};
+  }
+  const ArcWay way(part.arc, {origin, direction}, part.radius);
+  const auto in = way.enter(std::max(span->t0, way.beyond(after)), span->t1);
   if (!in) return std::nullopt;
-  const std::optional<ArcEntry> out = step_to_arc(part, ray, span->t1, in->t);
-  if (!out) return std::nullopt;
-  return PipeSpan{place_at(in->t), place_at(out->t)};
+  return PipeSpan{place_at(in->t), place_at(way.leave(in->t))};
 }
 
 bool CreasePipes::holds(Vec3d x, double depth) const {

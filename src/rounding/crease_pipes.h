@@ -57,9 +57,9 @@ class CreasePipes {
   [[nodiscard]] const CreaseCurve& curve_of(std::uint32_t part) const { return parts_[part].curve; }
   // How far it lies above its chord.
   [[nodiscard]] double bulge_of(std::uint32_t part) const { return parts_[part].bulge; }
-  // The places between which a ray's whole line is within r of a part.
-  [[nodiscard]] std::optional<PipeSpan> span_of(std::uint32_t index, Vec3d origin,
-                                                Vec3d direction) const;
+  // The places between which a ray's whole line is within r of a part; of several the first that ends beyond `after`.
+  [[nodiscard]] std::optional<PipeSpan> span_of(std::uint32_t index, Vec3d origin, Vec3d direction,
+                                                double after) const;
   // Whether x lies deeper than this within a ball.
   [[nodiscard]] bool holds(Vec3d x, double depth) const;
 
@@ -81,19 +81,12 @@ class CreasePipes {
     Vec3d point;
     double u = 0;
   };
-  struct ArcEntry {
-    double t;
-    Turn turn;
-  };
-
   static Part make_part(const CreaseCurve& curve);
   static std::vector<Part> parts_of(std::span<const CreaseCurve> creases);
   static std::vector<Box> boxes_of(std::span<const Part> parts);
 
   // The nearest place of a part to x.
   [[nodiscard]] static Foot foot_on(const Part& part, Vec3d x);
-  [[nodiscard]] static std::optional<ArcEntry> step_to_arc(const Part& part, const Ray& ray,
-                                                           double from, double to);
 
   std::vector<CreaseCurve> creases_;
   std::vector<Part> parts_;

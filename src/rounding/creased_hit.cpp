@@ -48,9 +48,10 @@ class CreasedHit {
     const bool covered = !is_clear(filled_ == nullptr ? nullptr : &filled_->outside, hit) &&
                          is_covered(at_.x, at_.face);
     const bool kept = inner_ == nullptr || is_clear(inner_, hit) || is_kept(at_.x, at_.face);
-    if (covered && (entering_ || kept)) return through_fillet(kept);
+    const bool leaves_void = inner_ != nullptr && !entering_ && start_ == RayStart::outside;
+    if (covered && !leaves_void && (entering_ || kept)) return through_fillet(kept);
     if (inner_ == nullptr) return std::nullopt;
-    if (!entering_ && start_ == RayStart::outside) return out_of_void(ray, covered);
+    if (leaves_void) return out_of_void(ray, covered);
     if (kept) return stay();
     return entering_ ? into_void() : from_inside();
   }
@@ -115,8 +116,9 @@ class CreasedHit {
     const double along = met ? met->t / at_.scale : 0;
     const double t = entering_ ? at_.t - along : at_.t + along;
     if (met && t >= 0) return make(Resolution::Outcome::moved, t, -met->normal, Feature::fillet);
-    if (entering_ && start_ == RayStart::outside) {
-      // From the fillet's far side into the void, or, by rounding errors, from its surface: then the face stands.
+    if (entering_ && (start_ == RayStart::outside || !met)) {
+      // From the fillet's far side into the void, or, by rounding errors, from its surface or beside it: then the face
+      // stands.
       return kept ? stay() : into_void();
     }
     if (!kept) return make(Resolution::Outcome::moved, at_.t, -normal_, Feature::fillet);

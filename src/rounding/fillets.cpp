@@ -12,6 +12,8 @@ constexpr double kBeside = 1e-4;
 constexpr double kLeastWeight = -1e-6;
 // Relative to the radius: nearer than this to its surface, a ball does not hold a point.
 constexpr double kOnBall = 1e-6;
+// Two faces' contacts on their common edge are one.
+constexpr double kSame = 1e-5;
 
 // n = α a + β b, up to kBeside, with weights that count.
 bool is_between(Vec3d n, Vec3d a, Vec3d b) {
@@ -51,21 +53,41 @@ Fillets::Fillets(const CreasedSolid& outside, std::span<const PlainCrease> plain
   }
 }
 
+// Of each face the nearest place: beside its foot on a plane, a ball is within the tolerance of other triangles, too.
 Fillets::Contacts Fillets::contacts_at(Vec3d c) const {
-  Contacts contacts;
+  struct Nearest {
+    std::uint32_t region;
+    double squared;
+    Vec3d foot;
+  };
+  std::array<Nearest, kMostContacts> nearest;
+  std::size_t count = 0;
   const double most = outside_->radius + outside_->tolerance;
-  // What lies within the tolerance of where a ball touches a plane is one contact.
-  const double same = 16 * outside_->tolerance / outside_->radius;
   outside_->surface.for_each_near(c - Vec3d(most), c + Vec3d(most), [&](const SurfaceTriangle& t) {
     if (is_plainly_beyond(c, t, most)) return;
     const Vec3d foot = nearest_on_triangle(c, t) - c;
-    if (length_squared(foot) > most * most || contacts.count == kMostContacts) return;
-    const Vec3d toward = normalize(foot);
-    for (std::size_t i = 0; i < contacts.count; ++i) {
-      if (length_squared(contacts.toward[i] - toward) < same) return;
+    const double squared = length_squared(foot);
+    if (squared > most * most) return;
+    const auto end = nearest.begin() + std::ptrdiff_t(count);
+    const auto same =
+        std::find_if(nearest.begin(), end, [&](const Nearest& n) { return n.region == t.region; });
+    if (same == end) {
+      if (count < kMostContacts) nearest[count++] = {t.region, squared, foot};
+    } else if (squared < same->squared) {
+      *same = {t.region, squared, foot};
     }
-    contacts.toward[contacts.count++] = toward;
   });
+  Contacts contacts;
+  for (std::size_t k = 0; k < count; ++k) {
+    const Vec3d toward = normalize(nearest[k].foot);
+    const auto known = std::span(contacts.toward).first(contacts.count);
+    const auto is_same = [&](Vec3d other) {
+      return length_squared(other - toward) < kSame * kSame;
+    };
+    if (std::none_of(known.begin(), known.end(), is_same)) {
+      contacts.toward[contacts.count++] = toward;
+    }
+  }
   return contacts;
 }
 
@@ -123,15 +145,18 @@ bool Fillets::begins_at(const Part& part, const PipePlace& place) const {
 std::optional<FilletCrossing> Fillets::meet(std::uint32_t index, Vec3d origin, Vec3d direction,
                                             const Wanted& wanted) const {
   const Part& part = parts_[index];
-  const std::optional<PipeSpan> span = outside_->pipes.span_of(part.pipe, origin, direction);
-  if (!span) return std::nullopt;
   const auto counts = [&](const PipePlace& place) {
     return place.t > wanted.t_min && place.t < wanted.t_max && begins_at(part, place);
   };
-  // Into the ball is out of the fillet.
-  if (wanted.exits && counts(span->in)) return FilletCrossing{span->in.t, -span->in.normal, false};
-  if (wanted.entries && counts(span->out)) {
-    return FilletCrossing{span->out.t, -span->out.normal, true};
+  double after = -INFINITY;
+  while (const auto span = outside_->pipes.span_of(part.pipe, origin, direction, after)) {
+    // Into the ball is out of the fillet.
+    if (wanted.exits && counts(span->in))
+      return FilletCrossing{span->in.t, -span->in.normal, false};
+    if (wanted.entries && counts(span->out)) {
+      return FilletCrossing{span->out.t, -span->out.normal, true};
+    }
+    after = span->out.t;
   }
   return std::nullopt;
 }
