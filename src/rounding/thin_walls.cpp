@@ -1,6 +1,7 @@
 #include "rounding/thin_walls.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <vector>
 
@@ -22,6 +23,10 @@ constexpr int kFirstHalvings = 20;
 // Of the radius: so far below an edge a ball begins to grow.
 constexpr double kBelowEdge = 1e-3;
 constexpr int kMostGrowth = 400;
+// What lies on the plane on which a ball touches, or behind it, it does not touch: other triangles of the same face.
+constexpr double kOnPlane = 1 - 1e-9;
+// Of the radius: where a ball gets stuck this little smaller, it has to be looked at finely.
+constexpr double kNearlyFull = 0.05;
 constexpr std::size_t kSidesAtOnce = 256;
 
 // Where a ball touches the surface, or nearly.
@@ -41,19 +46,39 @@ bool are_opposite(const Contact& a, const Contact& b) {
   return dot(a.normal, b.normal) < kOpposite || dot(a.direction, b.direction) < kOpposite;
 }
 
-// The point nearest to the origin of the hull of unit vectors, nearly. E. G. Gilbert, "An iterative procedure for
-// computing the minimum of a quadratic form on a convex set" (1966).
-Vec3d nearest_of_hull(const std::vector<Contact>& contacts) {
+// The point nearest to the origin of the hull of unit vectors. E. G. Gilbert, D. W. Johnson, S. S. Keerthi, "A fast
+// procedure for computing the distance between complex objects" (1988).
+Vec3d nearest_of_hull(const std::vector<Vec3d>& directions) {
   constexpr int kRounds = 64;
-  constexpr double kNear = 0.02;
-  Vec3d nearest = contacts.front().direction;
+  constexpr double kNear = 1e-9;
+  std::array<Vec3d, 4> simplex{directions.front()};
+  std::size_t count = 1;
+  Vec3d nearest = simplex[0];
+  const auto take = [&](Vec3d a, Vec3d b, Vec3d c) {
+    const Vec3d near = nearest_on_triangle({}, {a, b, c, 0});
+    if (!(length_squared(near) < length_squared(nearest))) return;
+    nearest = near;
+    simplex = {a, b, c};
+  };
   for (int i = 0; i < kRounds; ++i) {
-    const auto along = [&](const Contact& c) { return dot(c.direction, nearest); };
-    const Vec3d support = std::ranges::min_element(contacts, {}, along)->direction;
-    const Vec3d way = support - nearest;
-    const double gain = -dot(way, nearest), squared = length_squared(nearest);
-    if (gain <= kNear * squared || squared < kStuckInBlade * kStuckInBlade) break;
-    nearest += way * std::min(gain / length_squared(way), 1.0);
+    const auto along = [&](Vec3d d) { return dot(d, nearest); };
+    const Vec3d support = *std::ranges::min_element(directions, {}, along);
+    const double squared = length_squared(nearest);
+    if (squared - dot(support, nearest) <= kNear * squared) break;
+    simplex[count++] = support;
+    if (count < 4) {
+      take(simplex[0], simplex[1], simplex[count - 1]);
+      continue;
+    }
+    const auto [a, b, c, d] = simplex;
+    take(a, b, d);
+    take(a, c, d);
+    take(b, c, d);
+    count = 3;
+    const auto is_beyond = [&](Vec3d p) {
+      return dot(p, nearest) < (1 - kNear) * length_squared(nearest);
+    };
+    if (is_beyond(a) || is_beyond(b) || is_beyond(c) || is_beyond(d)) return {};  // it is within
   }
   return nearest;
 }
@@ -61,12 +86,20 @@ Vec3d nearest_of_hull(const std::vector<Contact>& contacts) {
 class GrowingBall {
  public:
   GrowingBall(const SolidSurface& surface, Vec3d center, double radius)
-      : surface_(surface), center_(center), full_(radius) {}
+      : surface_(surface), start_(center), full_(radius) {}
 
   bool gets_stuck() {
+    if (!gets_stuck(kTouches)) return false;
+    return radius_ < (1 - kNearlyFull) * full_ || gets_stuck(kTouchesFinely);
+  }
+
+ private:
+  // Contacts within `touching` are taken as one until it seems stuck: that leads it beside its way by as much.
+  bool gets_stuck(double touching) {
+    center_ = start_;
     find_near(full_);
     for (int i = 0; i < kMostGrowth && radius_ < full_; ++i) {
-      take_contacts(kTouches);
+      take_contacts(touching);
       if (is_stuck()) take_contacts(kTouchesFinely);
       if (is_stuck()) return true;
       const double speed = length(middle_);
@@ -77,7 +110,6 @@ class GrowingBall {
     return radius_ < full_;
   }
 
- private:
   // What is nearer to the centre, and the radius.
   void find_near(double distance) {
     near_.clear();
@@ -101,7 +133,15 @@ class GrowingBall {
       contacts_.push_back(c);
       contacts_.back().normal = normal_of(*c.triangle);
     }
-    middle_ = nearest_of_hull(contacts_);
+    std::ranges::sort(contacts_, {}, &Contact::distance);
+    directions_.clear();
+    for (auto c = contacts_.begin(); c != contacts_.end(); ++c) {
+      const auto hides = [&](const Contact& nearer) {
+        return dot(c->direction, nearer.direction) * c->distance > kOnPlane * nearer.distance;
+      };
+      if (std::none_of(contacts_.begin(), c, hides)) directions_.push_back(c->direction);
+    }
+    middle_ = nearest_of_hull(directions_);
   }
   [[nodiscard]] bool touches(const Contact& c) const {
     return c.distance <= std::min((1 + touching_) * radius_, full_);
@@ -135,10 +175,11 @@ class GrowingBall {
   }
 
   const SolidSurface& surface_;
-  Vec3d center_;
+  Vec3d start_, center_;
   Vec3d middle_;  // of the directions to what it touches
   double full_, radius_ = 0, far_ = 0, touching_ = 0;
   std::vector<Contact> near_, contacts_;
+  std::vector<Vec3d> directions_;  // of contacts, without those on planes of others
 };
 
 }  // namespace

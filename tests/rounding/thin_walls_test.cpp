@@ -63,6 +63,22 @@ TEST(GrowingBall, gets_stuck_between_walls_that_are_nearly_parallel) {
   for (const double lean : {19.0, 25.0, 40.0}) EXPECT_FALSE(is_stuck(lean)) << lean;
 }
 
+// In a wedge of 30, 60 and 90 degrees all balls that begin to grow on its shortest side end as the one that touches all
+// sides: by way of other sides, so that what is touched comes and goes.
+TEST(GrowingBall, finds_the_only_place_where_it_fits) {
+  const double a = std::sqrt(3), b = 1, inscribed = 0.5 * (a + b - 2);
+  const TriangleSoup wedge = prism_over("wedge", {{0, 0}, {a, 0}, {0, b}}, {});
+  const double low = wedge.positions.front().z, high = wedge.positions.back().z;
+  ASSERT_GT(high - low, 2 * inscribed);
+  for (int i = 1; i < 500; ++i) {
+    for (const double height : {0.1, 0.3, 0.5}) {
+      const Vec3d x(0, b * i / 500, low + (high - low) * height);
+      EXPECT_FALSE(gets_stuck_at(wedge, x, {-1, 0, 0}, inscribed * (1 - 2e-5))) << x.y;
+      EXPECT_TRUE(gets_stuck_at(wedge, x, {-1, 0, 0}, inscribed * (1 + 2e-5))) << x.y;
+    }
+  }
+}
+
 // A wheel whose teeth are narrower than two balls at their tips.
 TriangleSoup gear(double tip) {
   Outline outline;
