@@ -38,7 +38,8 @@ step_tidy() { scripts/tidy.py; }
 step_asan() {
   local statistics='samples_follow_their_pdf|sampled_irradiance_is_what_is_seen'
   statistics+='|shares_of_what_.*_hold_what_rays_find|agree_with_the_balls'
-  statistics+='|takes_away_nothing_but_edges|where_a_ball_fits|rays_from_inside_leave'
+  statistics+='|takes_away_nothing_but_edges|where_a_ball_fits|rays_from_inside_leave|settled_as_all_others'
+  statistics+='|same_from_all_sides|what_rays_find|converges_to_the_path|halve_the_error|volume_of_their_solid'
   cmake --preset asan
   cmake --build --preset asan
   ASAN_OPTIONS=detect_leaks=1:strict_string_checks=1 UBSAN_OPTIONS=print_stacktrace=1 \
