@@ -3,7 +3,8 @@
 //            hits in such bands are kept all the same. Each that has bands and is large gets a grid of cells in its
 //            barycentrics; in those that are clear no search is needed.
 // Guarantee  a ball of the radius that touches the face in a clear cell is nowhere near another face
-// Cost       cells by halves: as many searches as cells that aren't clear, twice; a bit for each cell
+// Cost       squares of cells by quarters, down to those that a border crosses: each looks at what is near to the one that
+//            it is part of; a bit for each cell
 #pragma once
 
 #include <cstddef>
@@ -16,10 +17,10 @@ namespace arris {
 
 class ClearCells {
  public:
-  // One bit for each cell: row by u, bit by v.
+  // One bit for each cell: row by u, bit by v. Both sides have as many as their lengths need.
   struct Grid {
     std::uint32_t triangle = 0;
-    std::uint32_t cells = 0;  // along each side
+    std::uint32_t cells_v = 0;
     std::vector<std::uint64_t> rows;
   };
 
@@ -35,7 +36,8 @@ class ClearCells {
 
  private:
   struct Entry {
-    std::uint32_t triangle, first, cells;
+    std::uint32_t triangle, first;
+    std::uint16_t cells_u, cells_v;
   };
   std::vector<Entry> entries_;  // by triangle
   std::vector<std::uint64_t> rows_;

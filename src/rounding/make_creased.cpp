@@ -266,27 +266,34 @@ class CreasedMaker {
     return ClearCells(parallel_collect<ClearCells::Grid>(
         of.size(), kGridsAtOnce, [&](std::size_t i, std::vector<ClearCells::Grid>& grids) {
           const SurfaceTriangle triangle = *callers_triangle(of[i].front().triangle);
+          const Vec3d normal = in_.regions.planes[triangle.region].normal;
           const double area =
               0.5 * length(cross(triangle.p1 - triangle.p0, triangle.p2 - triangle.p0));
-          if (!(share_in(of[i]) * area > kLargeArea * r_ * r_)) return;
-          const Vec3d normal = in_.regions.planes[triangle.region].normal;
+          if (!(area > kLargeArea * r_ * r_)) return;
+          const double share = spared_share(surface, triangle, normal, of[i]);
+          if (!(share * area > kLargeArea * r_ * r_)) return;
           ClearCells::Grid grid = ClearCells::make_grid(surface, triangle, normal, r_);
           if (!grid.rows.empty()) grids.push_back(std::move(grid));
         }));
   }
 
-  // How much of a triangle lies in its bands, nearly.
-  static double share_in(std::span<const TriangleBand> bands) {
+  // How much of a triangle lies in its bands and is kept, nearly.
+  [[nodiscard]] double spared_share(const SolidSurface& surface, const SurfaceTriangle& triangle,
+                                    Vec3d normal, std::span<const TriangleBand> bands) const {
     constexpr int kSamples = 12;  // along each side
-    int within = 0, all = 0;
+    const Vec3d along_u = triangle.p1 - triangle.p0, along_v = triangle.p2 - triangle.p0;
+    const Vec3d corner = triangle.p0 - normal * r_;
+    int spared = 0, all = 0;
     for (int i = 0; i < kSamples; ++i) {
       for (int j = 0; i + j < kSamples; ++j, ++all) {
         const float u = (float(i) + 0.33F) / kSamples, v = (float(j) + 0.33F) / kSamples;
         const auto holds = [&](const TriangleBand& b) { return b.band.depth(u, v) > 0; };
-        within += std::ranges::any_of(bands, holds) ? 1 : 0;
+        if (std::none_of(bands.begin(), bands.end(), holds)) continue;
+        const Vec3d center = corner + along_u * double(u) + along_v * double(v);
+        spared += surface.is_near(center, r_, triangle.region) ? 0 : 1;
       }
     }
-    return double(within) / all;
+    return double(spared) / all;
   }
 
   const CreasedInput& in_;
