@@ -3,8 +3,8 @@
 //            hits in such bands are kept all the same. Each that has bands and is large gets a grid of cells in its
 //            barycentrics; in those that are clear no search is needed.
 // Guarantee  a ball of the radius that touches the face in a clear cell is nowhere near another face
-// Cost       squares of cells by quarters, down to those that a border crosses: each looks at what is near to the one that
-//            it is part of; a bit for each cell
+// Cost       rectangles of cells by halves, down to those that a border crosses: each looks at what is near to the
+//            one of which it is part; a bit for each cell
 #pragma once
 
 #include <cstddef>
