@@ -6,8 +6,8 @@
 // In / Out   the mesh's own space and units; rays in double precision, directions need not be unit
 // Guarantee  a closed convex solid whose every edge turns by min_angle or more is rounded exactly: its
 //            surface is that of the union of all balls of the radius that fit inside
-//            (tests/rounding/oracle_test.cpp); so are the convex edges of closed solids of flat faces that are not
-//            convex (tests/rounding/creased_test.cpp), and their concave ones, where all balls fit that lie outside
+//            (tests/rounding/oracle_test.cpp); so are the convex edges of closed solids that are not convex
+//            (tests/rounding/creased_test.cpp), and their concave ones, where all balls fit that lie outside
 //            (tests/rounding/fillets_test.cpp). Const after building, safe from any number of threads.
 // Limits     solids that aren't exact are rounded locally along convex edges, and keep their concave ones sharp. A ray
 //            that passes one of these and next leaves it by a kept face went through material: let the first hit
@@ -192,8 +192,8 @@ class Rounding {
   // Of a hit on an edge; nothing for other hits, and where faces meet without smooth edges. position: of the hit.
   [[nodiscard]] std::optional<EdgeBlend> blend_of(const RoundedHit& hit, Vec3d position) const;
 
-  // The solid (connected component) of a triangle, and whether it is exact (see Guarantee): once a ray has
-  // passed such a solid it never meets it again.
+  // The solid (connected component) of a triangle, and whether it is closed, convex and rounded exactly: once a ray has
+  // passed such a solid it never meets it again. False for solids with concave edges, however exact.
   [[nodiscard]] std::uint32_t solid_of(std::uint32_t triangle) const;
   [[nodiscard]] bool is_exact(std::uint32_t solid) const;
 

@@ -223,4 +223,14 @@ bool can_hold(const Shell& outer, const Shell& inner) {
   return true;
 }
 
+std::uint32_t shell_around(std::span<const Shell> shells, std::uint32_t hollow) {
+  std::uint32_t outer = kNone;
+  if (!is_cavity(shells[hollow])) return outer;
+  for (std::uint32_t s = 0; s < shells.size(); ++s) {
+    if (!can_hold(shells[s], shells[hollow])) continue;
+    if (outer == kNone || shells[s].volume < shells[outer].volume) outer = s;
+  }
+  return outer;
+}
+
 }  // namespace arris

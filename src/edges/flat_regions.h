@@ -6,6 +6,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "arris/inspect.h"
@@ -48,5 +49,7 @@ std::vector<std::uint32_t> turn_inverted_shells(WeldedMesh& mesh, const FlatRegi
 bool is_cavity(const Shell& shell);
 // Whether a shell's bounds have the inner one's within: it may be a hollow of this solid.
 bool can_hold(const Shell& outer, const Shell& inner);
+// The smallest that can hold a hollow; kNone if there is none, or it is no hollow.
+std::uint32_t shell_around(std::span<const Shell> shells, std::uint32_t hollow);
 
 }  // namespace arris

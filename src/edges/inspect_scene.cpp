@@ -93,7 +93,11 @@ ObjectReport inspect_object(const Scene& scene, const Object& object, double min
   report.vertices = welded.vertices.size();
   report.shells = welded.shells.size();
   report.degenerate_triangles = welded.degenerate_triangles;
-  const std::vector<bool> convex = count_edges(welded, regions, min_angle, report.edges);
+  std::vector<bool> convex = count_edges(welded, regions, min_angle, report.edges);
+  for (std::uint32_t s = 0; s < welded.shells.size(); ++s) {
+    const std::uint32_t outer = shell_around(welded.shells, s);
+    if (outer != kNone) convex[outer] = false;
+  }
   report.closed = !welded.shells.empty();
   report.convex = report.closed;
   std::size_t first = 0;

@@ -111,12 +111,14 @@ class CreasedHit {
 
   // From the fillet into the solid, or the other way.
   [[nodiscard]] Resolution through_fillet(bool kept) const {
-    const std::optional<PipeHit> met =
-        filled_->outside.cross_void(at_.x, entering_ ? -at_.direction : at_.direction).met;
+    const Vec3d into_fillet = entering_ ? -at_.direction : at_.direction;
+    const auto [met, exit] = filled_->outside.cross_void(at_.x, into_fillet);
     const double along = met ? met->t / at_.scale : 0;
     const double t = entering_ ? at_.t - along : at_.t + along;
     if (met && t >= 0) return make(Resolution::Outcome::moved, t, -met->normal, Feature::fillet);
-    if (entering_ && (start_ == RayStart::outside || !met)) {
+    const bool is_beside =
+        !met && (exit.region == kNone || !is_covered(at_.x + into_fillet * exit.t, exit.region));
+    if (entering_ && (start_ == RayStart::outside || is_beside)) {
       // From the fillet's far side into the void, or, by rounding errors, from its surface or beside it: then the face
       // stands.
       return kept ? stay() : into_void();

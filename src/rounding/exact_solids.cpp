@@ -48,18 +48,11 @@ class ExactMaker {
     return any;
   }
 
-  // A hollow is of the smallest shell around it.
   [[nodiscard]] std::vector<std::vector<std::uint32_t>> hollows_of_shells() const {
     const std::vector<Shell>& shells = in_.welded.shells;
     std::vector<std::vector<std::uint32_t>> hollows(shells.size());
     for (std::uint32_t s = 0; s < shells.size(); ++s) {
-      if (!is_cavity(shells[s])) continue;
-      std::uint32_t outer = kNone;
-      for (std::uint32_t o = 0; o < shells.size(); ++o) {
-        if (!can_hold(shells[o], shells[s])) continue;
-        if (outer == kNone || std::abs(shells[o].volume) < std::abs(shells[outer].volume))
-          outer = o;
-      }
+      const std::uint32_t outer = shell_around(shells, s);
       if (outer != kNone) hollows[outer].push_back(s);
     }
     return hollows;
@@ -74,7 +67,11 @@ class ExactMaker {
     parallel_for(wanted.size(), {},
                  [&](std::size_t i) { made[i] = make_creased_solid(input, wanted[i]); });
     for (std::size_t i = 0; i < wanted.size(); ++i) {
-      if (!made[i]) continue;
+      if (!made[i]) {
+        if (wanted[i].size() > 1)
+          made_.left_sharp.insert(made_.left_sharp.end(), wanted[i].begin(), wanted[i].end());
+        continue;
+      }
       made_.bands.insert(made_.bands.end(), made[i]->bands.begin(), made[i]->bands.end());
       for (const std::uint32_t s : wanted[i]) join(s, wanted[i].front(), made[i]->solid.radius);
       made_.clamped.insert(made_.clamped.end(), made[i]->clamped.begin(), made[i]->clamped.end());

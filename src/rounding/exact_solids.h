@@ -33,6 +33,8 @@ struct MadeExact {
   std::vector<TriangleBand> bands;
   std::vector<ClampedPart> clamped;
   std::uint64_t filled_edges = 0;  // concave ones with fillets
+  // Shells of solids with hollows in whose walls no ball fits: rounded by themselves they might reach into one another.
+  std::vector<std::uint32_t> left_sharp;
 };
 
 MadeExact make_exact_solids(const ExactInput& input, Rounding::Data& data);

@@ -40,8 +40,8 @@ Fillets::Fillets(const CreasedSolid& outside, std::span<const PlainCrease> plain
   for (std::uint32_t i = 0; i < outside.pipes.part_count(); ++i) {
     const CreaseCurve& curve = outside.pipes.curve_of(i);
     const Contacts contacts = contacts_at(curve.at(0.5 * (curve.u0 + curve.u1)));
-    // Around a corner the balls touch nothing else: the seam of two offsets, not a crease.
-    if (contacts.count < 2) continue;
+    // Around a corner the balls touch nothing else: the seam of two offsets, not a crease. Smooth edges stay.
+    if (contacts.count < 2 || contacts.at_smooth_edge) continue;
     Part part{i, curve.is_line && contacts.count == 2, contacts.toward[0], contacts.toward[1]};
     while (!plain.empty() && plain.front().part < i) plain = plain.subspan(1);
     if (!plain.empty() && plain.front().part == i) {
@@ -79,6 +79,10 @@ Fillets::Contacts Fillets::contacts_at(Vec3d c) const {
   });
   Contacts contacts;
   for (std::size_t k = 0; k < count; ++k) {
+    for (std::size_t i = 0; i < k; ++i) {
+      contacts.at_smooth_edge = contacts.at_smooth_edge ||
+                                outside_->surface.is_joined(nearest[i].region, nearest[k].region);
+    }
     const Vec3d toward = normalize(nearest[k].foot);
     const auto known = std::span(contacts.toward).first(contacts.count);
     const auto is_same = [&](Vec3d other) {

@@ -49,6 +49,7 @@ class Fillets {
   struct Contacts {
     std::array<Vec3d, kMostContacts> toward;  // unit, from the ball's centre
     std::size_t count = 0;
+    bool at_smooth_edge = false;  // two are on faces that meet in one
   };
   struct Part {
     std::uint32_t pipe;  // CreasePipes'

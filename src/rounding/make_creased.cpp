@@ -64,7 +64,6 @@ class CreasedMaker {
   }
 
   [[nodiscard]] std::optional<MadeCreased> make() const {
-    if (has_smooth_edges_ && in_.is_outside) return std::nullopt;
     // Such balls fit nowhere.
     if (r_ > outer_.size()) return std::nullopt;
     SolidSurface surface = make_surface();

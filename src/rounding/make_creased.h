@@ -26,7 +26,7 @@ struct CreasedInput {
   double radius;
   OnOverlap on_overlap = OnOverlap::report;
   std::span<const double> radii{};  // per half-edge, of convex ones; empty: all have the radius
-  bool is_outside = false;          // of the space outside (outside_mesh.h): flat faces alone
+  bool is_outside = false;          // of the space outside (outside_mesh.h)
 };
 
 struct MadeCreased {

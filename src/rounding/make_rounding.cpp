@@ -229,17 +229,31 @@ class RoundingMaker {
     std::set<FacePair> whole, parts;
     for (const ClampedPart& e : made.clamped) {
       add_clamped(e);
-      const FacePair faces = std::minmax(regions_.region[e.half_edge / 3],
-                                         regions_.region[welded_.twin[e.half_edge] / 3]);
       if (e.radius > 0) {
         ++clamped_;
       } else {
-        (e.from == 0 && e.to == 1 ? whole : parts).insert(faces);
+        (e.from == 0 && e.to == 1 ? whole : parts).insert(faces_at(e.half_edge));
       }
     }
+    for (const std::uint32_t s : made.left_sharp) leave_shell_sharp(s);
     left_in_creased_ = whole.size();
     sharp_in_part_ = std::uint64_t(std::ranges::count_if(
         parts, [&](const FacePair& faces) { return !whole.contains(faces); }));
+  }
+
+  [[nodiscard]] FacePair faces_at(std::uint32_t h) const {
+    return std::minmax(regions_.region[h / 3], regions_.region[welded_.twin[h] / 3]);
+  }
+
+  void leave_shell_sharp(std::uint32_t s) {
+    std::set<FacePair> edges;
+    for_edges_of(EdgeKind::convex, welded_, kinds_, s, [&](std::uint32_t h) {
+      kinds_[h] = kinds_[welded_.twin[h]] = EdgeKind::smooth;
+      edges.insert(faces_at(h));
+      add_clamped({h, 0});
+    });
+    narrow_ += edges.size();
+    data_->solids[s].all_rounded = data_->solids[s].exact = false;
   }
 
   void add_clamped(const ClampedPart& part) {

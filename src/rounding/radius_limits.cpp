@@ -20,6 +20,7 @@ std::optional<double> median(std::vector<double>& values) {
 // What a shell's edges and triangles say about it.
 struct ShellSize {
   double area = 0;
+  double volume = 0;
   double outline =
       0;  // of its faces: edges between two of them count twice, smooth ones don't count
   bool convex = true;
@@ -34,6 +35,8 @@ double area_of(const WeldedMesh& mesh, const Triangle& t) {
 std::vector<ShellSize> measure_shells(const WeldedMesh& mesh, const FlatRegions& regions,
                                       double min_angle) {
   std::vector<ShellSize> sizes(mesh.shells.size());
+  for (std::uint32_t s = 0; s < sizes.size(); ++s)
+    sizes[s].volume = std::abs(mesh.shells[s].volume);
   for (std::uint32_t h = 0; h < mesh.twin.size(); ++h) {
     if (mesh.shell[h / 3] == kNone) continue;
     ShellSize& size = sizes[mesh.shell[h / 3]];
@@ -54,7 +57,20 @@ std::vector<ShellSize> measure_shells(const WeldedMesh& mesh, const FlatRegions&
 
 double half_width(const Shell& shell, const ShellSize& size) {
   const double face = size.area / size.outline;
-  return shell.closed ? std::min(face, std::abs(shell.volume) / size.area) : face;
+  return shell.closed ? std::min(face, size.volume / size.area) : face;
+}
+
+// Their walls are thinner.
+void add_hollows(const WeldedMesh& mesh, std::vector<ShellSize>& sizes) {
+  for (std::uint32_t s = 0; s < mesh.shells.size(); ++s) {
+    const std::uint32_t outer = shell_around(mesh.shells, s);
+    if (outer == kNone) continue;
+    ShellSize& size = sizes[outer];
+    size.area += sizes[s].area;
+    size.outline += sizes[s].outline;
+    size.volume += mesh.shells[s].volume;
+    size.convex = false;
+  }
 }
 
 }  // namespace
@@ -65,7 +81,8 @@ RadiusLimits find_radius_limits(const MeshView& mesh, double min_angle, const st
   if (!turn_inverted_shells(welded, regions, min_angle).empty()) {
     regions = make_flat_regions(welded);
   }
-  const std::vector<ShellSize> sizes = measure_shells(welded, regions, min_angle);
+  std::vector<ShellSize> sizes = measure_shells(welded, regions, min_angle);
+  add_hollows(welded, sizes);
   RadiusLimits limits;
   std::vector<double> half_widths;
   std::size_t first = 0;

@@ -108,9 +108,9 @@ std::optional<ShortArc::Crossing> ShortArc::enter(Vec3d x, Vec3d direction, doub
     }
     begin = place_at(x, direction, begin.along + *ahead, r, begin.turn);
     const double rest = extent - *ahead;
-    // Into the ball, or to where the way passes it; from one that is behind halfway.
+    // Into the ball, or to where the way passes it; no farther than halfway, so that chords get short.
     double split = first_root(begin.slope, begin.excess).value_or(-0.5 * begin.slope);
-    if (!(split > 0 && split < rest)) split = 0.5 * rest;
+    split = split > 0 ? std::min(split, 0.5 * rest) : 0.5 * rest;
     if (split > kClose * r && count < kMostEnds) {
       ends[count++] = place_at(x, direction, begin.along + split, r, begin.turn);
     }
@@ -119,15 +119,20 @@ std::optional<ShortArc::Crossing> ShortArc::enter(Vec3d x, Vec3d direction, doub
   return std::nullopt;
 }
 
-// From ball to ball, each about the point that is nearest where the way leaves the one before.
+// From ball to ball, each about the point that is nearest where the way leaves the one before. On ways that touch, a
+// little at a time.
 ShortArc::Crossing ShortArc::leave(Vec3d x, Vec3d direction, double from, double r) const {
-  constexpr int kMostSteps = 100;
+  constexpr int kMostSteps = 200;
+  constexpr double kLeastStep = 1e-6;
   Place place = place_at(x, direction, from, r, {});
   for (int step = 0; step < kMostSteps; ++step) {
     const double half = 0.5 * place.slope;
     const double rest = std::sqrt(std::max(half * half - place.excess, 0.0)) - half;
-    if (!(rest > kClose * r)) break;
-    place = place_at(x, direction, place.along + rest, r, place.turn);
+    const bool is_close = !(rest > kLeastStep * r);
+    const Place next =
+        place_at(x, direction, place.along + std::max(rest, kLeastStep * r), r, place.turn);
+    if (is_close && !(next.excess <= kClose * r * r)) break;
+    place = next;
   }
   return {place.along, place.turn};
 }

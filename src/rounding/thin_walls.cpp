@@ -22,7 +22,7 @@ constexpr double kStuck = 0.05, kStuckInBlade = 1e-4;
 constexpr int kFirstHalvings = 20;
 // Of the radius: so far below an edge a ball begins to grow.
 constexpr double kBelowEdge = 1e-3;
-constexpr int kMostGrowth = 400;
+constexpr int kMostGrowth = 400, kMostFineGrowth = 100;
 // What lies on the plane on which a ball touches, or behind it, it does not touch: other triangles of the same face.
 constexpr double kOnPlane = 1 - 1e-9;
 // Of the radius: where a ball gets stuck this little smaller, it has to be looked at finely.
@@ -98,7 +98,8 @@ class GrowingBall {
   bool gets_stuck(double touching) {
     center_ = start_;
     find_near(full_);
-    for (int i = 0; i < kMostGrowth && radius_ < full_; ++i) {
+    const int most = touching == kTouches ? kMostGrowth : kMostFineGrowth;
+    for (int i = 0; i < most && radius_ < full_; ++i) {
       take_contacts(touching);
       if (is_stuck()) take_contacts(kTouchesFinely);
       if (is_stuck()) return true;

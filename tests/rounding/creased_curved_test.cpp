@@ -1,6 +1,6 @@
 // creased_curved_test.cpp — solids of revolution in facets, rounded, against the exact rounding of the curved solid
-// Reference  a ball fits into a solid of revolution iff its disc fits into the profile, so the opening is that of the
-//            profile, turned: quarters of circles at its convex corners
+// Reference  a ball fits into a solid of revolution, or outside of it, iff its disc fits beside the profile, so opening
+//            and closing are those of the profile, turned: quarters of circles at its convex, or concave, corners
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -59,10 +59,11 @@ TriangleSoup turn(const Profile& profile, int facets) {
   return mesh;
 }
 
-// How deep a place lies in the opening of the turned profile; negative outside.
-class TurnedOpening {
+// How deep a place lies in the opening, or the closing, of the turned profile; negative outside.
+class TurnedRounding {
  public:
-  TurnedOpening(Profile profile, double radius) : profile_(std::move(profile)), r_(radius) {}
+  TurnedRounding(Profile profile, double radius, RoundEdges edges)
+      : profile_(std::move(profile)), r_(radius), side_(edges == RoundEdges::convex ? 1 : -1) {}
 
   [[nodiscard]] double depth(Vec3d p) const {
     const Spot at{std::hypot(p.x, p.y), p.z};
@@ -77,12 +78,12 @@ class TurnedOpening {
         inside ^= at.x < b.x + (c.x - b.x) * (at.z - b.z) / (c.z - b.z);
       }
       const double turn = (b.x - a.x) * (c.z - b.z) - (b.z - a.z) * (c.x - b.x);
-      if (turn <= 0) continue;
-      // Into the solid along both sides.
+      if (turn * side_ <= 0) continue;
+      // Along both sides.
       const Spot in{sign(c.x - b.x) - sign(b.x - a.x), sign(c.z - b.z) - sign(b.z - a.z)};
       const double u = (at.x - b.x) * in.x, w = (at.z - b.z) * in.z;
       if (r_ > 0 && std::max(u, w) < r_ && std::min(u, w) > -r_)
-        return r_ - std::hypot(u - r_, w - r_);
+        return side_ * (r_ - std::hypot(u - r_, w - r_));
     }
     return inside ? nearest : -nearest;
   }
@@ -99,7 +100,7 @@ class TurnedOpening {
   }
 
   Profile profile_;
-  double r_;
+  double r_, side_;
 };
 
 struct Deviation {
@@ -110,16 +111,21 @@ struct Deviation {
 };
 
 // Rays at the profile's corners, from outside.
-Deviation measure(const Profile& profile, int facets, double radius, int rays) {
+Deviation measure(const Profile& profile, int facets, double radius, RoundEdges edges) {
+  constexpr int kRays = 1500;
   const TriangleSoup mesh = turn(profile, facets);
   RoundingOptions options;
   options.radius = radius;
+  options.edges = edges;
   const Rounding rounding = make_rounding(mesh.view(), options, mesh.name);
   Deviation out;
-  EXPECT_EQ(rounding.data().creased.size(), 1U) << mesh.name;
-  const TurnedOpening exact(profile, radius), sharp(profile, 0);
+  const bool opens = edges == RoundEdges::convex;
+  EXPECT_EQ(opens ? rounding.data().creased.size() : rounding.data().filled.size(), 1U)
+      << mesh.name;
+  const TurnedRounding exact(profile, radius, edges), sharp(profile, 0, edges);
+  const TurnedRounding& larger = opens ? sharp : exact;
   Random rng(11);
-  for (int i = 0; i < rays; ++i) {
+  for (int i = 0; i < kRays; ++i) {
     const Spot corner = profile.corners[std::size_t(i) % profile.corners.size()];
     const double angle = uniform(rng, 0, 2 * kPi);
     const double x = corner.x + uniform(rng, -1.5, 1.5) * radius;
@@ -129,9 +135,9 @@ Deviation measure(const Profile& profile, int facets, double radius, int rays) {
                               Vec3d(1e-3));
     // From a place outside that is not far: nothing of the solid is before.
     double back = radius;
-    while (back < 4 && !sharp.is_outside(target - d * back)) back += 0.5 * radius;
+    while (back < 4 && !larger.is_outside(target - d * back)) back += 0.5 * radius;
     const Ray ray{target - d * back, d};
-    if (!sharp.is_outside(ray.origin)) continue;
+    if (!larger.is_outside(ray.origin)) continue;
     const auto hit = trace(ray, {mesh.view(), &rounding});
     const double end = hit ? hit->t : 8;
     const auto worse = [&](double& known, double value, const char* what) {
@@ -160,13 +166,33 @@ TEST(CreasedCurved, rounding_of_facets_comes_to_that_of_the_curved_solid) {
       double before = INFINITY;
       for (const int facets : {16, 32, 64}) {
         SCOPED_TRACE(fmt::format("{}, {} facets, radius {}", profile.name, facets, radius));
-        const Deviation d = measure(profile, facets, radius, 1500);
+        const Deviation d = measure(profile, facets, radius, RoundEdges::convex);
         // Chords lie by so much inside of the circle about the outside.
         const double chord = 2 * (1 - std::cos(kPi / facets));
         const double worst = std::max(d.of_hits, d.of_passing);
         EXPECT_LE(worst, 1.6 * chord) << d.worst;
         EXPECT_LT(worst, 0.5 * before) << d.worst;
         EXPECT_GT(d.moved, 150);
+        EXPECT_GT(d.faces, 150);
+        before = worst;
+      }
+    }
+  }
+}
+
+TEST(CreasedCurved, fillets_of_facets_come_to_those_of_the_curved_solid) {
+  for (const Profile& profile : make_profiles()) {
+    if (profile.name == "washer") continue;  // has no concave edge
+    for (const double radius : {0.08, 0.2}) {
+      double before = INFINITY;
+      for (const int facets : {16, 32, 64}) {
+        SCOPED_TRACE(fmt::format("{}, {} facets, radius {}", profile.name, facets, radius));
+        const Deviation d = measure(profile, facets, radius, RoundEdges::concave);
+        const double chord = 2 * (1 - std::cos(kPi / facets));
+        const double worst = std::max(d.of_hits, d.of_passing);
+        EXPECT_LE(worst, 1.6 * chord) << d.worst;
+        EXPECT_LT(worst, 0.5 * before) << d.worst;
+        EXPECT_GT(d.moved, 30);
         EXPECT_GT(d.faces, 150);
         before = worst;
       }

@@ -222,13 +222,28 @@ TEST(CreasedShells, walls_of_hollows_that_would_vanish_stay) {
   }
 }
 
-TEST(CreasedShells, hollows_too_near_to_their_solid_s_edges_stay_sharp) {
+// Rounded as if it had no hollow, the outside would reach into that at its corners.
+TEST(CreasedShells, solids_whose_walls_are_all_too_thin_stay_sharp) {
   TriangleSoup mesh{"thin", {}, {}};
   append(mesh, block(2, 2, 2), {}, false);
   append(mesh, block(1.9, 1.9, 1.9), {0.05F, 0.05F, 0.05F}, true);
   const Rounding rounding = make_rounding(mesh.view(), options_of(0.12), mesh.name);
   EXPECT_TRUE(rounding.data().creased.empty());
-  EXPECT_EQ(rounding.report().exact_solids, 1U);
+  EXPECT_EQ(rounding.report().exact_solids, 0U);
+  EXPECT_EQ(rounding.report().rounded_edges, 0U);
+  EXPECT_EQ(rounding.report().clamped.size(), 12U);
+  Random rng(5);
+  for (int i = 0; i < 500; ++i) {
+    const Vec3d d = random_direction(rng);
+    const Vec3d target(uniform(rng, 0, 0.2), uniform(rng, 0, 0.2), uniform(rng, 0, 0.2));
+    const RoundedMesh object{mesh.view(), &rounding};
+    const Ray ray{target - d * 9.0, d};
+    const auto hit = trace(ray, object);
+    const std::vector<MeshHit> sharp = intersect_mesh(ray, mesh.view());
+    ASSERT_EQ(hit.has_value(), !sharp.empty());
+    if (!hit) continue;
+    EXPECT_NEAR(hit->t, sharp.front().t, 1e-9);
+  }
 }
 
 }  // namespace
