@@ -96,8 +96,17 @@ bool SolidSurface::is_near(Vec3d x, double distance, std::uint32_t but_region) c
   return tree_.any_near(x - Vec3d(distance), x + Vec3d(distance), [&](std::uint32_t i) {
     const SurfaceTriangle& t = triangles_[i];
     if (t.region == but_region || is_plainly_beyond(x, t, distance)) return false;
-    return length_squared(x - nearest_on_triangle(x, t)) < distance * distance &&
-           !is_joined(but_region, t.region);
+    const Vec3d foot = nearest_on_triangle(x, t);
+    return length_squared(x - foot) < distance * distance && !is_joined(but_region, t.region) &&
+           !is_on_joined(foot, kTouching * distance, but_region);
+  });
+}
+
+bool SolidSurface::is_on_joined(Vec3d x, double tolerance, std::uint32_t face) const {
+  if (!is_curved()) return false;
+  return tree_.any_near(x - Vec3d(tolerance), x + Vec3d(tolerance), [&](std::uint32_t i) {
+    const SurfaceTriangle& t = triangles_[i];
+    return is_joined(face, t.region) && length(x - nearest_on_triangle(x, t)) < tolerance;
   });
 }
 

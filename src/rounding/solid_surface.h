@@ -69,7 +69,8 @@ class SolidSurface {
   }
   [[nodiscard]] bool has_firm() const { return !firm_.empty(); }
 
-  // Whether a triangle of another region, one that isn't joined to it, is nearer to x than `distance`.
+  // Whether a triangle of another region, one that isn't joined to it, is nearer to x than `distance`; where it borders
+  // on one that is joined, that is the nearer.
   [[nodiscard]] bool is_near(Vec3d x, double distance, std::uint32_t but_region) const;
   // Whether a firm triangle reaches into a box.
   [[nodiscard]] bool has_firm_near(Vec3d low, Vec3d high) const {
@@ -105,6 +106,9 @@ class SolidSurface {
   [[nodiscard]] std::size_t bytes() const;
 
  private:
+  // Whether a place is on a face that is joined to another one.
+  [[nodiscard]] bool is_on_joined(Vec3d x, double tolerance, std::uint32_t face) const;
+
   std::vector<SurfaceTriangle> triangles_;
   std::vector<FacePair> joined_, blades_;  // sorted
   std::vector<std::uint32_t> firm_;
