@@ -105,6 +105,17 @@ TEST(RadiusLimits, of_several_solids_are_those_of_the_middle_one) {
   EXPECT_NEAR(limits.typical_half_width.value(), 2, 1e-5);
 }
 
+// A box of walls 0.1 thick: no ball between its outside and its hollow is larger than half of that.
+TEST(RadiusLimits, of_a_box_with_a_hollow_are_half_its_walls) {
+  Mesh mesh = test::make_box_mesh({2, 2, 2});
+  Mesh hollow = test::make_box_mesh({1.9, 1.9, 1.9});
+  for (Triangle& t : hollow.triangles) std::swap(t[1], t[2]);
+  append(mesh, hollow, {0, 0, 0});
+  const RadiusLimits limits = limits_of(mesh);
+  EXPECT_FALSE(limits.smallest_inradius);
+  EXPECT_NEAR(limits.typical_half_width.value(), 0.05, 0.001);
+}
+
 TEST(RadiusLimits, are_absent_where_there_is_no_edge_to_round) {
   const RadiusLimits limits = limits_of(test::make_square_mesh(1));
   EXPECT_FALSE(limits.smallest_inradius);
