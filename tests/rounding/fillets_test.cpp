@@ -251,5 +251,23 @@ TEST(Fillets, rays_that_leave_local_roundings_beside_a_fillet_do_not_meet_the_in
   EXPECT_GT(left, 20);
 }
 
+// Whatever way they go, and also where they come to the mesh within the material.
+TEST(Fillets, rays_that_start_deep_in_one_leave_the_material) {
+  const TriangleSoup mesh =
+      prism_over("L", {{0, 0}, {2, 0}, {2, 0.8}, {0.8, 0.8}, {0.8, 2}, {0, 2}}, {});
+  RoundingOptions options;
+  options.radius = 0.15;
+  options.edges = RoundEdges::concave;
+  const Rounding rounding = make_rounding(mesh.view(), options, mesh.name);
+  Random rng(4);
+  for (int i = 0; i < 1000; ++i) {
+    const Vec3d x(0.8 + uniform(rng, 0.005, 0.03), 0.8 + uniform(rng, 0.005, 0.03), 0.5);
+    const Vec3d d = random_direction(rng);
+    const auto hit = trace({x, d}, {mesh.view(), &rounding});
+    ASSERT_TRUE(hit);
+    EXPECT_GT(dot(hit->normal, d), 0) << i << " " << name_of(hit->feature) << " at " << hit->t;
+  }
+}
+
 }  // namespace
 }  // namespace arris::oracle
