@@ -132,27 +132,33 @@ FaceVoids voids_of(const PreparedScene& prepared, std::uint32_t geometry) {
 class CreasedEdge {
  public:
   CreasedEdge(const Rounding::Data& data, const Affine3d& rounding_from_object,
-              const EdgeMesh& mesh, const MeshEdge& edge)
-      : mesh_(mesh), edge_(edge), face0_(data.face[edge.face0]), face1_(data.face[edge.face1]) {
+              const EdgeMesh& mesh, std::uint32_t index)
+      : mesh_(mesh),
+        edge_(mesh.edges[index]),
+        face0_(data.face[edge_.face0]),
+        face1_(data.face[edge_.face1]) {
     if (face0_ == kNone || face1_ == kNone || face0_ == face1_) return;
     const Solid& solid = data.solids[data.faces[face0_].solid];
-    if (solid.creased == kNone) return;
-    solid_ = data.creased[solid.creased].get();
+    const bool has_fillet = solid.filled != kNone && mesh.is_concave(index);
+    if (!has_fillet && solid.creased == kNone) return;
+    solid_ = has_fillet ? &data.filled[solid.filled]->outside : data.creased[solid.creased].get();
+    const float outward = has_fillet ? -1 : 1;  // of the space outside
     const auto at = [&](std::uint32_t v) {
       return transform_point(rounding_from_object, Vec3d(mesh.vertices[v])) - solid.center;
     };
-    between_ = {at(edge.v0),
-                at(edge.v1),
-                Vec3d(data.faces[face0_].normal),
-                Vec3d(data.faces[face1_].normal),
+    between_ = {at(edge_.v0),
+                at(edge_.v1),
+                Vec3d(data.faces[face0_].normal * outward),
+                Vec3d(data.faces[face1_].normal * outward),
                 face0_,
                 face1_};
-    for (const std::uint32_t v : mesh.triangles[edge.face1]) {
-      if (v != edge.v0 && v != edge.v1) convex_ = dot(between_.normal0, at(v) - between_.p0) < 0;
+    for (const std::uint32_t v : mesh.triangles[edge_.face1]) {
+      if (v != edge_.v0 && v != edge_.v1) convex_ = dot(between_.normal0, at(v) - between_.p0) < 0;
     }
   }
 
   [[nodiscard]] bool is_one() const { return solid_ != nullptr; }
+  // Of the solid that is rounded there: the one outside for fillets.
   [[nodiscard]] bool is_convex() const { return convex_; }
   // In the mesh's space; nothing: all of it is.
   [[nodiscard]] std::optional<std::vector<EdgeEnds>> find_kept() const {
@@ -307,7 +313,8 @@ Sphere EdgeObjects::bounding_sphere(const PreparedScene& prepared, std::uint32_t
 }
 
 // All edges between the same two planes lie on one line: an edge is rounded if one of the arcs between its faces
-// is beside it. Of creased solids all convex edges are, and concave ones where a rounding ends at them.
+// is beside it. Of creased solids and of fillets the parts that stay sharp are known; edges without a fillet stay but
+// where a rounding ends at them.
 void EdgeObjects::find_rounded(const PreparedScene& prepared, ObjectEdges& object) {
   object.rounded.clear();
   object.kept.clear();
@@ -332,12 +339,7 @@ void EdgeObjects::find_rounded(const PreparedScene& prepared, ObjectEdges& objec
         material_of(record, edge.face0).index != material_of(record, edge.face1).index
             ? RoundedEdge::painted
             : RoundedEdge::yes;
-    const std::uint32_t solid = rounded.rounding->solid_of(edge.face0);
-    if (solid != kNone && data.solids[solid].filled != kNone && mesh.is_concave(e)) {
-      out[e] = if_rounded;
-      continue;
-    }
-    if (const CreasedEdge creased(data, rounding_from_object, mesh, edge); creased.is_one()) {
+    if (const CreasedEdge creased(data, rounding_from_object, mesh, e); creased.is_one()) {
       std::optional<std::vector<EdgeEnds>> parts = creased.find_kept();
       if (creased.is_convex() && parts && parts->empty()) {
         out[e] = if_rounded;

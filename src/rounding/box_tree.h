@@ -66,6 +66,14 @@ class BoxTree {
     for_each_where([&](const Node& node) { return is_met(node, origin, inverse, begin, end); },
                    visit);
   }
+  // Whether one of the items along a ray, within [begin, end], is it.
+  template <class IsIt>
+  [[nodiscard]] bool any_along(Vec3d origin, Vec3d direction, double begin, double end,
+                               IsIt&& is_it) const {
+    const Vec3d inverse(1 / direction.x, 1 / direction.y, 1 / direction.z);
+    return any_where([&](const Node& node) { return is_met(node, origin, inverse, begin, end); },
+                     is_it);
+  }
   [[nodiscard]] std::size_t bytes() const {
     return nodes_.size() * sizeof(Node) + items_.size() * sizeof(std::uint32_t);
   }

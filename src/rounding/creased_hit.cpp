@@ -42,16 +42,13 @@ class CreasedHit {
   // Nothing: the local network decides.
   [[nodiscard]] std::optional<Resolution> resolve(const Ray& ray, const MeshHit& hit) const {
     // From a local rounding's void: the solid is closed, and its inside is not met.
-    if (inner_ == nullptr && !entering_ && start_ == RayStart::outside) {
-      return make(Resolution::Outcome::passed, at_.t, normal_, Feature::face);
+    if (!entering_ && start_ == RayStart::outside) {
+      return inner_ == nullptr ? make(Resolution::Outcome::passed, at_.t, normal_, Feature::face)
+                               : out_of_void(ray, hit);
     }
-    const bool covered = !is_clear(filled_ == nullptr ? nullptr : &filled_->outside, hit) &&
-                         is_covered(at_.x, at_.face);
     const bool kept = inner_ == nullptr || is_clear(inner_, hit) || is_kept(at_.x, at_.face);
-    const bool leaves_void = inner_ != nullptr && !entering_ && start_ == RayStart::outside;
-    if (covered && !leaves_void && (entering_ || kept)) return through_fillet(kept);
+    if ((entering_ || kept) && is_covered(hit)) return through_fillet(kept);
     if (inner_ == nullptr) return std::nullopt;
-    if (leaves_void) return out_of_void(ray, covered);
     if (kept) return stay();
     return entering_ ? into_void() : from_inside();
   }
@@ -73,6 +70,9 @@ class CreasedHit {
   [[nodiscard]] bool is_covered(Vec3d x, std::uint32_t face) const {
     return filled_ != nullptr &&
            !filled_->outside.is_kept(x, -Vec3d(data_.faces[face].normal), face);
+  }
+  [[nodiscard]] bool is_covered(const MeshHit& hit) const {
+    return filled_ != nullptr && !is_clear(&filled_->outside, hit) && is_covered(at_.x, at_.face);
   }
 
   [[nodiscard]] Resolution make(Resolution::Outcome outcome, double t, Vec3d normal,
@@ -127,15 +127,19 @@ class CreasedHit {
     return make(Resolution::Outcome::passed, at_.t, normal_, Feature::fillet);
   }
 
-  [[nodiscard]] Resolution out_of_void(const Ray& ray, bool covered) const {
+  [[nodiscard]] Resolution out_of_void(const Ray& ray, const MeshHit& hit) const {
     const Resolution passed = make(Resolution::Outcome::passed, at_.t, normal_, Feature::face);
     // A ray from the face, or from a fillet that has no thickness there, may start behind it.
     if (at_.t * at_.scale <= inner_->tolerance) return passed;
     const Vec3d origin = ray.origin - solid_.center;
+    // What is met in any order may lie beyond where the ray enters, and is judged.
+    const double tolerance = inner_->tolerance, end = at_.t * at_.scale - tolerance;
+    if (inner_->surface.is_entered(origin, at_.direction, tolerance, end)) return passed;
     if (const auto met = inner_->cross_void(origin, at_.direction).met) {
       return make(Resolution::Outcome::moved, met->t / at_.scale, met->normal, feature_of(*met));
     }
-    return covered ? make(Resolution::Outcome::moved, at_.t, -normal_, Feature::fillet) : passed;
+    return is_covered(hit) ? make(Resolution::Outcome::moved, at_.t, -normal_, Feature::fillet)
+                           : passed;
   }
 
   // Beyond the void there may be a fillet.

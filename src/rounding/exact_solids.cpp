@@ -119,6 +119,11 @@ class ExactMaker {
     for (std::size_t i = 0; i < wanted.size(); ++i) {
       if (!made[i]) continue;
       covers_.insert(covers_.end(), made[i]->bands.begin(), made[i]->bands.end());
+      for (const ClampedPart& part : made[i]->clamped) {
+        made_.clamped.push_back(
+            {turned_edge(part.half_edge), part.radius, 1 - part.to, 1 - part.from});
+        if (part.from == 0 && part.to == 1) --data_.report.rounded_edges;
+      }
       plain_.push_back({wanted[i], true, std::move(made[i]->plain)});
       fill(wanted[i], std::move(made[i]->solid), plain_.back().creases);
     }

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "rounding/thin_walls.h"
+
 namespace arris {
 namespace {
 
@@ -14,6 +16,8 @@ constexpr double kLeastWeight = -1e-6;
 constexpr double kOnBall = 1e-6;
 // Two faces' contacts on their common edge are one.
 constexpr double kSame = 1e-5;
+// Of the radius: so far behind the surface of a fillet is something of it.
+constexpr double kBehind = 1e-3;
 
 // n = α a + β b, up to kBeside, with weights that count.
 bool is_between(Vec3d n, Vec3d a, Vec3d b) {
@@ -43,6 +47,7 @@ Fillets::Fillets(const CreasedSolid& outside, std::span<const PlainCrease> plain
     // Around a corner the balls touch nothing else: the seam of two offsets, not a crease. Smooth edges stay.
     if (contacts.count < 2 || contacts.at_smooth_edge) continue;
     Part part{i, curve.is_line && contacts.count == 2, contacts.toward[0], contacts.toward[1]};
+    part.among_walls = is_among_walls(curve);
     while (!plain.empty() && plain.front().part < i) plain = plain.subspan(1);
     if (!plain.empty() && plain.front().part == i) {
       part.plain0 = dot(plain.front().axis, plain.front().p0 - curve.center);
@@ -95,6 +100,15 @@ Fillets::Contacts Fillets::contacts_at(Vec3d c) const {
   return contacts;
 }
 
+bool Fillets::is_among_walls(const CreaseCurve& curve) const {
+  const Vec3d p0 = curve.at(curve.u0), p1 = curve.at(curve.u1);
+  const double r = outside_->radius, bulge = curve.is_line ? 0 : length(curve.a) + length(curve.b);
+  const Vec3d reach(r + bulge);
+  return outside_->surface.has_firm_near(min(p0, p1) - reach, max(p0, p1) + reach) ||
+         is_between_walls(outside_->surface, (p0 + p1) * 0.5,
+                          2 * r + bulge + 0.5 * length(p1 - p0));
+}
+
 void Fillets::set_box(Part& part) const {
   const CreaseCurve& curve = outside_->pipes.curve_of(part.pipe);
   const double r = outside_->radius;
@@ -143,7 +157,8 @@ bool Fillets::begins_at(const Part& part, const PipePlace& place) const {
   }
   if (place.u > part.plain0 && place.u < part.plain1) return true;
   const double r = outside_->radius;
-  return !outside_->pipes.holds(x, r * kOnBall);
+  if (outside_->pipes.holds(x, r * kOnBall)) return false;
+  return !part.among_walls || !outside_->is_beneath(x + place.normal * (kBehind * r));
 }
 
 std::optional<FilletCrossing> Fillets::meet(std::uint32_t index, Vec3d origin, Vec3d direction,

@@ -4,7 +4,8 @@
 //            fillet's end it may leave again without: so each part of a pipe, in a box, is met on its own.
 // In / Out   coordinates relative to the solid's centre
 // Legend     c point of a crease; r radius; x = c + r n on its pipe. There the fillet begins iff n lies in the cone of
-//            the directions in which the ball around c touches the mesh, and no other ball holds x.
+//            the directions in which the ball around c touches the mesh, and no other ball holds x. Between walls that are
+//            too near to each other for the ball, air stays as material does (thin_walls.h).
 #pragma once
 
 #include <array>
@@ -56,11 +57,13 @@ class Fillets {
     // Where the balls around a segment touch: the same all along it.
     bool has_sides = false;
     Vec3d side_a, side_b;
+    bool among_walls = false;  // what lies behind it may be air that stays
     // Of the curve, where no other pipe is near.
     double plain0 = 0, plain1 = 0;
     Vec3d low{}, high{};  // see box_of()
   };
 
+  [[nodiscard]] bool is_among_walls(const CreaseCurve& curve) const;
   void set_box(Part& part) const;
   [[nodiscard]] Contacts contacts_at(Vec3d c) const;
   [[nodiscard]] bool begins_at(const Part& part, const PipePlace& place) const;

@@ -69,7 +69,7 @@ class CreasedMaker {
     SolidSurface surface = make_surface();
     if (has_smooth_edges_ && is_too_fine(surface)) return std::nullopt;
     const std::vector<FacePair> sharp = join_smooth_faces(surface);
-    if (!in_.is_outside) surface.set_walls(find_thin_walls({surface, sharp, in_.regions, r_}));
+    surface.set_walls(find_thin_walls({surface, sharp, in_.regions, r_}));
     VariedCreases found = find(surface);
     if (found.curves.empty()) return std::nullopt;
     std::vector<TriangleBand> bands = parallel_collect<TriangleBand>(
@@ -83,7 +83,6 @@ class CreasedMaker {
                        crease_tolerance(outer_.size(), r_),
                        std::move(clear)};
     solid.surface.set_firm(faces_that_vanish(solid));
-    if (in_.is_outside && solid.surface.has_firm()) return std::nullopt;
     std::vector<PlainCrease> plain = find_plain_creases(solid, in_.regions.planes);
     append_sharp_parts(solid, found.clamped);
     return MadeCreased{std::move(solid), std::move(bands), std::move(found.clamped),
@@ -97,8 +96,6 @@ class CreasedMaker {
     const bool clamp = in_.on_overlap == OnOverlap::clamp && !in_.is_outside;
     if (has_own_radii_) return find_varied_creases({input, in_.radii, clamp});
     FoundCreases found = find_creases(input);
-    // Fillets are all or none: the space outside has no faces to keep beside them.
-    if (in_.is_outside && !found.missing.empty()) return {};
     if (clamp && !found.missing.empty()) {
       const std::vector<double> radii(in_.kinds.size(), r_);
       return find_varied_creases({input, radii, clamp});

@@ -6,11 +6,6 @@
 namespace arris {
 namespace {
 
-// With the second and third corner exchanged, edge k of a triangle is the reverse of what edge 2 − k was.
-std::uint32_t turned_edge(std::uint32_t h) {
-  return h / 3 * 3 + (2 - h % 3);
-}
-
 EdgeKind turned_kind(EdgeKind kind) {
   if (kind == EdgeKind::convex) return EdgeKind::concave;
   return kind == EdgeKind::concave ? EdgeKind::convex : kind;

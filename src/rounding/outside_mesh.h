@@ -5,6 +5,7 @@
 // Source     the definition of rounding by balls that fit outside; docs/rounding.md
 #pragma once
 
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -18,6 +19,11 @@ struct OutsideMesh {
   FlatRegions regions;
   std::vector<EdgeKind> kinds;  // per half-edge
 };
+
+// The half-edge that is the reverse of one of the mesh before, and the other way.
+inline std::uint32_t turned_edge(std::uint32_t h) {
+  return h / 3 * 3 + (2 - h % 3);
+}
 
 OutsideMesh turn_inside_out(const WeldedMesh& welded, const FlatRegions& regions,
                             std::span<const EdgeKind> kinds);

@@ -41,6 +41,12 @@ double side_of(Vec3d origin, Vec3d direction, Vec3d a, Vec3d b) {
   return dot(direction, cross(a - origin, b - origin));
 }
 
+// Of a line that crosses the triangle's plane outward.
+bool is_outward_through(Vec3d origin, Vec3d direction, const SurfaceTriangle& t) {
+  return side_of(origin, direction, t.p1, t.p2) >= 0 &&
+         side_of(origin, direction, t.p2, t.p0) >= 0 && side_of(origin, direction, t.p0, t.p1) >= 0;
+}
+
 }  // namespace
 
 // C. Ericson, "Real-Time Collision Detection" (2005), §5.1.5.
@@ -125,15 +131,23 @@ SolidSurface::Exit SolidSurface::first_exit(Vec3d origin, Vec3d direction, doubl
     // Beyond what was found.
     const double ahead = dot(normal, t.p0 - origin);
     if (!(ahead > after * across && ahead < exit.t * across)) return;
-    const double w0 = side_of(origin, direction, t.p1, t.p2);
-    const double w1 = side_of(origin, direction, t.p2, t.p0);
-    const double w2 = side_of(origin, direction, t.p0, t.p1);
-    if (w0 < 0 || w1 < 0 || w2 < 0) return;
+    if (!is_outward_through(origin, direction, t)) return;
     const double at = ahead / across;
     if (at > after && at < exit.t) exit = {at, t.region, normal};
   });
   if (exit.region != kNone) exit.normal = normalize(exit.normal);
   return exit;
+}
+
+bool SolidSurface::is_entered(Vec3d origin, Vec3d direction, double after, double before) const {
+  return tree_.any_along(origin, direction, after, before, [&](std::uint32_t i) {
+    const SurfaceTriangle& t = triangles_[i];
+    const Vec3d normal = cross(t.p1 - t.p0, t.p2 - t.p0);
+    const double across = dot(normal, direction);
+    const double ahead = dot(normal, t.p0 - origin);
+    const bool is_within = across < 0 && ahead < after * across && ahead > before * across;
+    return is_within && is_outward_through(origin, -direction, t);
+  });
 }
 
 std::size_t SolidSurface::bytes() const {

@@ -87,6 +87,8 @@ class SolidSurface {
     Vec3d normal;
   };
   [[nodiscard]] Exit first_exit(Vec3d origin, Vec3d direction, double after) const;
+  // Whether a ray enters through a triangle within ]after, before[.
+  [[nodiscard]] bool is_entered(Vec3d origin, Vec3d direction, double after, double before) const;
 
   // Visits every triangle whose box reaches into this one, and some beside it; some more than once.
   template <class Visit>

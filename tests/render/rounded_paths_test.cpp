@@ -89,6 +89,8 @@ TEST(RoundedPaths, do_not_come_into_the_solid) {
   cases.push_back({block_with_boss("boss as wide as the ball", 0.5, 0.5, 0.8), 0.4});
   cases.push_back({block_with_boss("boss thinner than the ball", 0.3, 0.3, 0.8), 0.4});
   cases.push_back({block_with_boss("pocket with a thin floor", 0.8, 0.8, -1.2), 0.2});
+  cases.push_back({plate_with_slot(0.3), 0.2});
+  cases.push_back({plate_with_slot(0.39), 0.2});
   Tally all;
   for (const RoundEdges edges : {RoundEdges::convex, RoundEdges::concave, RoundEdges::both}) {
     for (const CreasedCase& c : cases) Walker(c.mesh, c.radius, edges).walk(20000, all);

@@ -71,27 +71,6 @@ class FilletShooter {
     for (int i = 0; i < rays; ++i) judge(make_ray(i), tally);
   }
 
-  [[nodiscard]] double depth(Vec3d x) const { return inside_.depth(x); }
-
-  // By how much x is in the rounded solid, relative to the radius: above 0 surely, below 0 surely not.
-  double inside_by(Vec3d x) {
-    const double depth = inside_.depth(x);
-    if (depth < 0) return -outside_.margin(x, rng_) / r_;
-    return edges_ == RoundEdges::concave ? depth / r_ : inside_.margin(x, rng_) / r_;
-  }
-
- private:
-  std::size_t pick(std::size_t count) {
-    return std::uniform_int_distribution<std::size_t>(0, count - 1)(rng_);
-  }
-  Vec3d direction() {
-    for (;;) {
-      const Vec3d v{uniform(rng_, -1, 1), uniform(rng_, -1, 1), uniform(rng_, -1, 1)};
-      const double l = length(v);
-      if (l > 0.1 && l <= 1) return v / l;
-    }
-  }
-
   void judge(const Ray& ray, FilletTally& tally) {
     if (inside_by(ray.origin) > -0.1) return;
     const auto hit = trace(ray, object());
@@ -127,6 +106,27 @@ class FilletShooter {
           "{}: o ({:.9g}, {:.9g}, {:.9g}) d ({:.9g}, {:.9g}, {:.9g}), {} {:.6g}: {}", name_,
           ray.origin.x, ray.origin.y, ray.origin.z, ray.direction.x, ray.direction.y,
           ray.direction.z, hit ? name_of(hit->feature) : "nothing", hit ? hit->t : 0, problem));
+    }
+  }
+
+  [[nodiscard]] double depth(Vec3d x) const { return inside_.depth(x); }
+
+  // By how much x is in the rounded solid, relative to the radius: above 0 surely, below 0 surely not.
+  double inside_by(Vec3d x) {
+    const double depth = inside_.depth(x);
+    if (depth < 0) return -outside_.margin(x, rng_) / r_;
+    return edges_ == RoundEdges::concave ? depth / r_ : inside_.margin(x, rng_) / r_;
+  }
+
+ private:
+  std::size_t pick(std::size_t count) {
+    return std::uniform_int_distribution<std::size_t>(0, count - 1)(rng_);
+  }
+  Vec3d direction() {
+    for (;;) {
+      const Vec3d v{uniform(rng_, -1, 1), uniform(rng_, -1, 1), uniform(rng_, -1, 1)};
+      const double l = length(v);
+      if (l > 0.1 && l <= 1) return v / l;
     }
   }
 
@@ -249,6 +249,46 @@ TEST(Fillets, rays_that_leave_local_roundings_beside_a_fillet_do_not_meet_the_in
     }
   }
   EXPECT_GT(left, 20);
+}
+
+// A slot narrower than the ball keeps its edges, to its mouths; the pocket that it leads out of has all its fillets.
+TEST(Fillets, gaps_too_narrow_for_the_ball_stay_sharp) {
+  constexpr double kWidth = 0.3, kRadius = 0.2, kFloor = -0.6;
+  const CreasedCase slot{plate_with_slot(kWidth), kRadius};
+  FilletShooter shooter(slot, RoundEdges::concave, 9);
+  // The floor's edges within the slot, and no other.
+  for (const ClampedEdge& edge : shooter.rounding().report().clamped) {
+    EXPECT_EQ(edge.radius, 0);
+    for (const Vec3d p : {edge.from, edge.to}) {
+      EXPECT_NEAR(std::abs(p.y), kWidth / 2, 1e-6);
+      EXPECT_NEAR(p.z, kFloor, 1e-6);
+      EXPECT_GT(p.x, 1 - 1e-6);
+    }
+  }
+  EXPECT_EQ(shooter.rounding().report().clamped.size(), 2U);
+  // In the slot, and about its other end.
+  Random rng(5);
+  for (int i = 0; i < 4000; ++i) {
+    const Vec3d target(uniform(rng, 1 + 2 * kRadius, 2.1), uniform(rng, -0.2, 0.2),
+                       uniform(rng, kFloor - 0.1, 0.1));
+    const Vec3d d = random_direction(rng);
+    const Ray ray{target - d * 10, d};
+    const std::vector<MeshHit> sharp = intersect_mesh(ray, shooter.object().mesh);
+    const auto hit = trace(ray, shooter.object());
+    ASSERT_EQ(hit.has_value(), !sharp.empty()) << i;
+    if (!hit || ray.origin.x + d.x * hit->t < 1 + 2 * kRadius) continue;
+    EXPECT_NEAR(hit->t, sharp.front().t, 1e-6) << i << " " << name_of(hit->feature);
+  }
+  // On the other side of the pocket all is as if there were no slot.
+  FilletTally tally;
+  for (int i = 0; i < 1500; ++i) {
+    const Ray ray = shooter.make_ray(i);
+    if (ray.direction.x < 0) continue;
+    const auto hit = trace(ray, shooter.object());
+    if (hit && ray.origin.x + ray.direction.x * hit->t < 1 - 3 * kRadius) shooter.judge(ray, tally);
+  }
+  EXPECT_GT(tally.fillets, 20);
+  EXPECT_LE(tally.wrong * 300, tally.rays) << fmt::format("{}", fmt::join(tally.examples, "\n"));
 }
 
 // Whatever way they go, and also where they come to the mesh within the material.

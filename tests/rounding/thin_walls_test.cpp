@@ -92,9 +92,10 @@ TriangleSoup gear(double tip) {
   return prism_over("gear", outline, {});
 }
 
-Rounding round(const TriangleSoup& mesh, double radius) {
+Rounding round(const TriangleSoup& mesh, double radius, RoundEdges edges = RoundEdges::convex) {
   RoundingOptions options;
   options.radius = radius;
+  options.edges = edges;
   options.too_large = TooLarge::leave_sharp;
   return make_rounding(mesh.view(), options, mesh.name);
 }
@@ -107,8 +108,11 @@ struct Agreement {
 // Shoots rays at the surface near edges, and others at the places that they hit.
 class Shooter {
  public:
-  Shooter(const TriangleSoup& mesh, double radius)
-      : mesh_(mesh), radius_(radius), far_(2 * mesh.size()), rounding_(round(mesh, radius)) {}
+  Shooter(const TriangleSoup& mesh, double radius, RoundEdges edges = RoundEdges::convex)
+      : mesh_(mesh),
+        radius_(radius),
+        far_(2 * mesh.size()),
+        rounding_(round(mesh, radius, edges)) {}
 
   // A place that one ray comes to is where others that are aimed at it stop, too, if nothing is before it.
   void compare(int count, Agreement& out) {
@@ -179,6 +183,29 @@ TEST(ThinWalls, are_the_same_from_all_sides) {
     Random rng(seed);
     for (const TriangleSoup& mesh : make_nonconvex_solids(seed)) {
       Shooter(mesh, std::pow(10, uniform(rng, -2, -0.5)) * mesh.size()).compare(300, any);
+    }
+  }
+  EXPECT_GT(any.rays, 50000U);
+  EXPECT_LE(any.through * 5000, any.rays) << any.examples;
+}
+
+// Fillets end where gaps between walls are too narrow for the ball.
+TEST(ThinWalls, narrow_gaps_are_the_same_from_all_sides) {
+  Agreement found;
+  for (const RoundEdges edges : {RoundEdges::concave, RoundEdges::both}) {
+    for (const double width : {0.1, 0.3, 0.39}) {
+      const TriangleSoup slot = plate_with_slot(width);
+      Shooter(slot, 0.2, edges).compare(600, found);
+    }
+  }
+  EXPECT_LE(found.through * 5000, found.rays) << found.examples;
+  // The sides of their ends are met only by rays that come to the mesh behind them.
+  Agreement any;
+  for (std::uint64_t seed = 1; seed < 12; ++seed) {
+    Random rng(seed);
+    for (const TriangleSoup& mesh : make_nonconvex_solids(seed)) {
+      Shooter(mesh, std::pow(10, uniform(rng, -2, -1)) * mesh.size(), RoundEdges::concave)
+          .compare(300, any);
     }
   }
   EXPECT_GT(any.rays, 50000U);

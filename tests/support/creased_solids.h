@@ -37,6 +37,15 @@ inline TriangleSoup block_with_boss(std::string name, double base, double top, d
   return mesh;
 }
 
+// A plate with a pocket, 2 by 2 and 0.6 deep, from which a slot of the same floor leads out along x.
+inline TriangleSoup plate_with_slot(double width) {
+  const Grid at{{{-2, -1, 1, 2}, {-2, -1, -0.5 * width, 0.5 * width, 1, 2}, {-1, -0.6, 0}}};
+  return solid_of_cells("slot", at, [](int x, int y, int z) {
+    const bool in_pocket = x == 1 && y >= 1 && y <= 3, in_slot = x == 2 && y == 2;
+    return z == 0 || !(in_pocket || in_slot);
+  });
+}
+
 struct CreasedCase {
   TriangleSoup mesh;
   double radius;

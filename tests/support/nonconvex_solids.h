@@ -150,23 +150,14 @@ inline std::vector<std::pair<std::string, Outline>> make_outlines(Random& rng, d
   return all;
 }
 
-// Some of the cells of a grid of uneven spacing. Faces of one plane need not be joined: the kernel joins them.
-inline TriangleSoup random_cells(Random& rng, int side, double share) {
-  TriangleSoup mesh{"cells", {}, {}};
-  std::array<std::vector<double>, 3> at;
-  for (auto& line : at) {
-    line.push_back(0);
-    for (int i = 0; i < side; ++i)
-      line.push_back(line.back() + std::pow(10, uniform(rng, -1.2, 0)));
-  }
-  const auto cells = std::size_t(side * side * side);
-  std::vector<bool> full(cells, false);
-  const auto is_full = [&](int x, int y, int z) {
-    if (x < 0 || y < 0 || z < 0 || x >= side || y >= side || z >= side) return false;
-    return bool(full[std::size_t((z * side + y) * side + x)]);
-  };
-  for (std::size_t i = 0; i < cells; ++i) full[i] = uniform(rng, 0, 1) < share;
-  full[0] = true;
+// The planes between the cells of a grid, along each axis.
+using Grid = std::array<std::vector<double>, 3>;
+
+// Some of the cells of a grid: is_full(x, y, z), of the cell's place. Faces of one plane are not joined: the kernel
+// joins them.
+template <class IsFull>
+TriangleSoup solid_of_cells(std::string name, const Grid& at, const IsFull& is_full) {
+  TriangleSoup mesh{std::move(name), {}, {}};
   std::map<std::array<int, 3>, std::uint32_t> vertices;
   const auto vertex = [&](std::array<int, 3> p) {
     const auto [found, is_new] = vertices.emplace(p, std::uint32_t(mesh.positions.size()));
@@ -175,15 +166,22 @@ inline TriangleSoup random_cells(Random& rng, int side, double share) {
                                 float(at[2][std::size_t(p[2])])});
     return found->second;
   };
-  for (int z = 0; z < side; ++z)
-    for (int y = 0; y < side; ++y)
-      for (int x = 0; x < side; ++x) {
+  const auto count = [&](std::size_t axis) { return int(at[axis].size()) - 1; };
+  const auto is_within = [&](std::array<int, 3> c) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      if (c[axis] < 0 || c[axis] >= count(axis)) return false;
+    }
+    return true;
+  };
+  for (int z = 0; z < count(2); ++z)
+    for (int y = 0; y < count(1); ++y)
+      for (int x = 0; x < count(0); ++x) {
         if (!is_full(x, y, z)) continue;
         for (std::size_t axis = 0; axis < 3; ++axis)
           for (int up : {0, 1}) {
             std::array<int, 3> next{x, y, z};
             next[axis] += up == 1 ? 1 : -1;
-            if (is_full(next[0], next[1], next[2])) continue;
+            if (is_within(next) && is_full(next[0], next[1], next[2])) continue;
             std::array<int, 3> p{x, y, z};
             p[axis] += up;
             const std::size_t u = (axis + 1) % 3, v = (axis + 2) % 3;
@@ -199,6 +197,22 @@ inline TriangleSoup random_cells(Random& rng, int side, double share) {
           }
       }
   return mesh;
+}
+
+// A grid of uneven spacing.
+inline TriangleSoup random_cells(Random& rng, int side, double share) {
+  Grid at;
+  for (auto& line : at) {
+    line.push_back(0);
+    for (int i = 0; i < side; ++i)
+      line.push_back(line.back() + std::pow(10, uniform(rng, -1.2, 0)));
+  }
+  std::vector<bool> full(std::size_t(side * side * side), false);
+  for (std::size_t i = 0; i < full.size(); ++i) full[i] = uniform(rng, 0, 1) < share;
+  full[0] = true;
+  return solid_of_cells("cells", at, [&](int x, int y, int z) {
+    return bool(full[std::size_t((z * side + y) * side + x)]);
+  });
 }
 
 // A sphere's grid of points, every other one drawn out: thin blades that meet at the poles.
