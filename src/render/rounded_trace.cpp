@@ -130,7 +130,13 @@ Verdict judge(const RoundedGeometry& g, const TraceRay& ray, const Candidate& c)
       solid.exact || (start == RayStart::outside && solid.filled != kNone);
   const bool settled = !verdict.entering && (start == RayStart::inside || !may_start_in_void);
   if (settled && g.is_kept(c.triangle, c.u, c.v)) return verdict;
-  const Resolution r = g.rounding->resolve(local, {c.triangle, c.u, c.v, c.t}, start);
+  Resolution r = g.rounding->resolve(local, {c.triangle, c.u, c.v, c.t}, start);
+  const bool into_fillet = r.hit.feature == Feature::fillet;
+  if (r.outcome == Resolution::Outcome::passed && !verdict.entering &&
+      start == RayStart::inside && !into_fillet) {
+    // Where it starts, by the errors of borders of what stays, the solid ends already.
+    r = {Resolution::Outcome::moved, {0, Vec3d(face.normal), Feature::edge}};
+  }
   verdict.outcome = r.outcome;
   verdict.hit = r.hit;
   if (r.outcome != Resolution::Outcome::moved) return verdict;

@@ -38,9 +38,11 @@ struct Verdict {
       false;  // of the hit, and of what it moved to: a ray from the void may enter before it leaves
 };
 
-// Most hits: from outside, on what is kept. From inside, the ray may be leaving its void: judge() looks.
+// Most hits: from outside, on what is kept. From inside, the ray may be leaving its void, and a ray that starts inside
+// may have left a fillet by its side: judge() looks.
 inline bool is_plainly_kept(const RoundedGeometry& g, const TraceRay& ray, const RTCHit& hit) {
   if (g.rounding == nullptr) return true;
+  if (ray.from.side == Side::inside) return false;
   if (!g.is_kept(hit.primID, hit.u, hit.v)) return false;
   if (g.frame == nullptr && !g.any_turned) [[likely]] {
     return dot(Vec3f(hit.Ng_x, hit.Ng_y, hit.Ng_z), ray.direction) < 0;

@@ -48,6 +48,9 @@ class CreasedHit {
     }
     const bool kept = inner_ == nullptr || is_clear(inner_, hit) || is_kept(at_.x, at_.face);
     if ((entering_ || kept) && is_covered(hit)) return through_fillet(kept);
+    if (kept && entering_ && start_ == RayStart::inside) {
+      if (const auto side = out_of_fillet(ray)) return side;
+    }
     if (inner_ == nullptr) return std::nullopt;
     if (kept) return stay();
     return entering_ ? into_void() : from_inside();
@@ -125,6 +128,15 @@ class CreasedHit {
     }
     if (!kept) return make(Resolution::Outcome::moved, at_.t, -normal_, Feature::fillet);
     return make(Resolution::Outcome::passed, at_.t, normal_, Feature::fillet);
+  }
+
+  // A ray that starts in a fillet and comes to a face from outside has left it by its side in a gap that stays.
+  [[nodiscard]] std::optional<Resolution> out_of_fillet(const Ray& ray) const {
+    if (filled_ == nullptr) return std::nullopt;
+    const auto met = filled_->outside.cross_void(ray.origin - solid_.center, at_.direction).met;
+    if (!met || met->t > at_.t * at_.scale + filled_->outside.tolerance) return std::nullopt;
+    return make(Resolution::Outcome::moved, std::min(met->t / at_.scale, at_.t), -met->normal,
+                Feature::fillet);
   }
 
   [[nodiscard]] Resolution out_of_void(const Ray& ray, const MeshHit& hit) const {

@@ -4,8 +4,8 @@
 //            fillet's end it may leave again without: so each part of a pipe, in a box, is met on its own.
 // In / Out   coordinates relative to the solid's centre
 // Legend     c point of a crease; r radius; x = c + r n on its pipe. There the fillet begins iff n lies in the cone of
-//            the directions in which the ball around c touches the mesh, and no other ball holds x. Between walls that are
-//            too near to each other for the ball, air stays as material does (thin_walls.h).
+//            the directions in which the ball around c touches the mesh, and no other ball holds x. Between
+//            walls that are too near to each other for the ball, air stays as material does (thin_walls.h).
 #pragma once
 
 #include <array>

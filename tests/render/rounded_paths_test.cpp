@@ -1,10 +1,11 @@
-// rounded_paths_test.cpp — light that goes from surface to surface of a rounded solid stays outside of it
-// What       paths that are reflected diffusely: a surface that one of them meets from inside is one that it came
-//            through, a hole in the rounding or between it and the mesh
+// rounded_paths_test.cpp — light that goes from surface to surface of a rounded solid stays on its side of it
+// What       paths that are reflected diffusely, outside or within: a surface that one of them meets from the other side
+//            is one that it came through, a hole in the rounding or between it and the mesh
 #include <gtest/gtest.h>
 
 #include <fmt/format.h>
 
+#include <array>
 #include <cmath>
 #include <memory>
 #include <optional>
@@ -21,7 +22,7 @@ namespace arris::oracle {
 namespace {
 
 struct Tally {
-  int hits = 0, rounded = 0, within = 0;
+  int hits = 0, rounded = 0, wrong = 0;
   std::string examples;
 };
 
@@ -46,34 +47,58 @@ class Walker {
   }
 
   void walk(int paths, Tally& tally) {
-    for (int i = 0; i < paths; ++i) walk_once(tally);
+    for (int i = 0; i < paths; ++i) {
+      const auto hit = shoot();
+      if (!hit) continue;
+      ++tally.hits;
+      if (hit->feature != Feature::face) ++tally.rounded;
+      if (hit->side != Side::outside) ++tally.wrong;
+      walk_from(*hit, Side::outside, tally);
+    }
+  }
+
+  // The same within the solid.
+  void walk_within(int paths, Tally& tally) {
+    for (int i = 0; i < paths; ++i) {
+      const auto hit = shoot();
+      if (hit && hit->side == Side::outside) walk_from(*hit, Side::inside, tally);
+    }
   }
 
  private:
-  void walk_once(Tally& tally) {
-    constexpr int kMostBounces = 64;
+  std::optional<SurfaceHit> shoot() {
     const Vec3d direction = random_direction(rng_);
     const Vec3d aim = middle_ + random_direction(rng_) * (0.2 * far_ * uniform(rng_, 0, 1));
     TraceRay ray;
     ray.origin = Vec3f(aim - direction * far_);
     ray.direction = Vec3f(direction);
+    return scene_->intersect(ray);
+  }
+
+  // On this side of the surface, from one place of it to the next.
+  void walk_from(SurfaceHit hit, Side side, Tally& tally) {
+    constexpr int kMostBounces = 64;
     for (int bounce = 0; bounce < kMostBounces; ++bounce) {
-      const std::optional<SurfaceHit> hit = scene_->intersect(ray);
-      if (!hit) return;
+      const Vec3d outward(hit.geometric_normal);
+      const Vec3d normal = side == Side::outside ? outward : -outward;
+      const Vec3d way = normal + random_direction(rng_);
+      const bool is_flat = dot(normal, way) < 1e-3;
+      const TraceRay ray = leave_surface(hit, Vec3f(normalize(is_flat ? normal : way)));
+      const std::optional<SurfaceHit> next = scene_->intersect(ray);
+      if (!next && side == Side::outside) return;
       ++tally.hits;
-      if (hit->feature != Feature::face) ++tally.rounded;
-      if (hit->side != Side::outside) {
-        ++tally.within;
+      if (next && next->feature != Feature::face) ++tally.rounded;
+      if (!next || next->side != side) {
+        ++tally.wrong;
         const Vec3f o = ray.origin, d = ray.direction;
         tally.examples += fmt::format(
-            "{}: from ({:.9g}, {:.9g}, {:.9g}) along ({:.9g}, {:.9g}, {:.9g}), bounce {}, to t "
-            "{}\n",
-            name_, o.x, o.y, o.z, d.x, d.y, d.z, bounce, hit->t);
+            "{}: from ({:.9g}, {:.9g}, {:.9g}) on {} along ({:.9g}, {:.9g}, {:.9g}), bounce {}, to "
+            "{} at {}\n",
+            name_, o.x, o.y, o.z, name_of(hit.feature), d.x, d.y, d.z, bounce,
+            next ? name_of(next->feature) : "nothing", next ? next->t : INFINITY);
         return;
       }
-      const Vec3d normal(hit->geometric_normal), way = normal + random_direction(rng_);
-      const bool is_flat = dot(normal, way) < 1e-3;
-      ray = leave_surface(*hit, Vec3f(normalize(is_flat ? normal : way)));
+      hit = *next;
     }
   }
 
@@ -84,19 +109,56 @@ class Walker {
   Random rng_{3};
 };
 
-TEST(RoundedPaths, do_not_come_into_the_solid) {
+std::vector<CreasedCase> make_path_cases() {
   std::vector<CreasedCase> cases = make_creased_cases();
   cases.push_back({block_with_boss("boss as wide as the ball", 0.5, 0.5, 0.8), 0.4});
   cases.push_back({block_with_boss("boss thinner than the ball", 0.3, 0.3, 0.8), 0.4});
   cases.push_back({block_with_boss("pocket with a thin floor", 0.8, 0.8, -1.2), 0.2});
-  cases.push_back({plate_with_slot(0.3), 0.2});
-  cases.push_back({plate_with_slot(0.39), 0.2});
+  return cases;
+}
+
+// Where fillets end in gaps.
+std::vector<CreasedCase> make_gap_cases() {
+  return {{plate_with_slot(0.3), 0.2}, {plate_with_slot(0.39), 0.2}};
+}
+
+constexpr std::array kAllKinds{RoundEdges::convex, RoundEdges::concave, RoundEdges::both};
+
+TEST(RoundedPaths, do_not_come_into_the_solid) {
   Tally all;
-  for (const RoundEdges edges : {RoundEdges::convex, RoundEdges::concave, RoundEdges::both}) {
-    for (const CreasedCase& c : cases) Walker(c.mesh, c.radius, edges).walk(20000, all);
+  for (const RoundEdges edges : kAllKinds) {
+    for (const auto& cases : {make_path_cases(), make_gap_cases()}) {
+      for (const CreasedCase& c : cases) Walker(c.mesh, c.radius, edges).walk(20000, all);
+    }
   }
   EXPECT_GT(all.rounded, 100000);
-  EXPECT_LE(all.within * 100000, all.hits) << all.examples;
+  EXPECT_LE(all.wrong * 100000, all.hits) << all.examples;
+}
+
+// As in glass.
+TEST(RoundedPaths, do_not_come_out_of_the_solid) {
+  for (const double part : {1.0, 1.7}) {
+    Tally all;
+    for (const RoundEdges edges : kAllKinds) {
+      for (const CreasedCase& c : make_path_cases()) {
+        Walker(c.mesh, c.radius * part, edges).walk_within(1000, all);
+      }
+    }
+    EXPECT_GT(all.rounded, 10000);
+    EXPECT_LE(all.wrong * 100000, all.hits) << all.examples;
+  }
+}
+
+// A fillet's side in a gap is met only by rays that come to the mesh behind it.
+TEST(RoundedPaths, seldom_come_out_of_fillets_in_gaps) {
+  Tally all;
+  for (const RoundEdges edges : {RoundEdges::concave, RoundEdges::both}) {
+    for (const CreasedCase& c : make_gap_cases()) {
+      Walker(c.mesh, c.radius, edges).walk_within(1000, all);
+    }
+  }
+  EXPECT_GT(all.rounded, 10000);
+  EXPECT_LE(all.wrong * 5000, all.hits) << all.examples;
 }
 
 }  // namespace
