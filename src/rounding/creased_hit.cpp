@@ -46,7 +46,7 @@ class CreasedHit {
       return inner_ == nullptr ? make(Resolution::Outcome::passed, at_.t, normal_, Feature::face)
                                : out_of_void(ray, hit);
     }
-    const bool kept = inner_ == nullptr || is_clear(inner_, hit) || is_kept(at_.x, at_.face);
+    const bool kept = inner_ == nullptr || inner_->is_kept(place_of(hit), at_.x, normal_, at_.face);
     if ((entering_ || kept) && is_covered(hit)) return through_fillet(kept);
     if (kept && entering_ && start_ == RayStart::inside) {
       if (const auto side = out_of_fillet(ray)) return side;
@@ -59,12 +59,7 @@ class CreasedHit {
  private:
   [[nodiscard]] const Face& face() const { return data_.faces[at_.face]; }
 
-  static bool is_clear(const CreasedSolid* solid, const MeshHit& hit) {
-    return solid != nullptr && solid->clear.is_clear(hit.triangle, hit.u, hit.v);
-  }
-  [[nodiscard]] bool is_kept(Vec3d x, std::uint32_t face) const {
-    return inner_->is_kept(x, Vec3d(data_.faces[face].normal), face);
-  }
+  static MeshPlace place_of(const MeshHit& hit) { return {hit.triangle, hit.u, hit.v}; }
   [[nodiscard]] Resolution stay() const {
     return make(Resolution::Outcome::kept, at_.t, normal_, Feature::face);
   }
@@ -75,7 +70,8 @@ class CreasedHit {
            !filled_->outside.is_kept(x, -Vec3d(data_.faces[face].normal), face);
   }
   [[nodiscard]] bool is_covered(const MeshHit& hit) const {
-    return filled_ != nullptr && !is_clear(&filled_->outside, hit) && is_covered(at_.x, at_.face);
+    return filled_ != nullptr &&
+           !filled_->outside.is_kept(place_of(hit), at_.x, -normal_, at_.face);
   }
 
   [[nodiscard]] Resolution make(Resolution::Outcome outcome, double t, Vec3d normal,

@@ -14,12 +14,6 @@
 namespace arris {
 namespace {
 
-// Relative to the radius: bounds that differ by less are one.
-constexpr double kSame = 1e-6;
-// Relative to the radius: a place this near to the nearest one is as good.
-constexpr double kNear = 1e-4;
-// Relative to the radius: so near a place need be to lie well within reach.
-constexpr double kInside = 0.5;
 // Faces that turn by less are one: 1 − cosine.
 constexpr double kLeastTurn = 0.03;
 // How far beside the plane of two faces' normals that of a place between them may lie: facets end at pipes' ends.
@@ -30,6 +24,8 @@ constexpr double kBeneath = 1e-5;
 constexpr double kTolerances = 8;
 // Of the radius: a point this near to the sharp surface is on it.
 constexpr double kOnSurface = 1e-4;
+// Of the radius: most ways through a void are shorter.
+constexpr double kShortWay = 4;
 // Of a way that should lie in a void: how many radii beneath the surface it may not be, and by how many it is looked
 // at; and about a place where it meets material, what shows how this lies.
 constexpr double kInMaterial = 0.02, kWayAtOnce = 0.1, kBesides = 0.01;
@@ -37,72 +33,6 @@ constexpr int kLeastWaySteps = 4, kMostWaySteps = 64;
 // Relative to the radius: steps in which edges are looked at.
 constexpr double kEdgeStep = 0.25;
 constexpr int kMostEdgeSteps = 256;
-// More functions than these cost more than asking the surface.
-constexpr std::size_t kMostDepths = 8;
-
-// Bounds r minus the distance to a triangle from above, on the offset of another one.
-class DepthBound {
- public:
-  DepthBound(const std::array<Vec3d, 3>& offset, const SurfaceTriangle& other, double radius)
-      : offset_(offset), other_(other), r_(radius) {}
-
-  // Nothing: it is nowhere near.
-  [[nodiscard]] std::optional<DepthAtCorners> find() const {
-    std::array<double, 3> distance{};
-    for (std::size_t i = 0; i < 3; ++i) distance[i] = distance_at(offset_[i]);
-    const auto farthest = std::size_t(std::ranges::max_element(distance) - distance.begin());
-    if (distance[farthest] <= r_) return DepthAtCorners{r_, r_, r_};
-    // Distances are convex: the tangent at any place bounds them from below. One from where the distance is r cuts
-    // off most; it lies on the way from the farthest corner to the nearest place.
-    const Vec3d near = nearest_place();
-    if (distance_at(near) >= r_) {
-      const DepthAtCorners bound = tangent(near);
-      if (std::max({bound.d0, bound.d1, bound.d2}) <= 0) return std::nullopt;
-      return bound;
-    }
-    // Newton's steps from outside stay there.
-    Vec3d at = offset_[farthest];
-    for (int i = 0; i < 20; ++i) {
-      const Vec3d away = at - nearest_on_triangle(at, other_);
-      const double far = length(away);
-      const double speed = dot(away, near - at) / far;
-      const Vec3d next = at - (near - at) * ((far - r_) / speed);
-      if (!(far - r_ > kSame * r_ && speed < 0)) break;
-      at = next;
-    }
-    return tangent(at);
-  }
-
- private:
-  [[nodiscard]] double distance_at(Vec3d c) const {
-    return length(c - nearest_on_triangle(c, other_));
-  }
-
-  // By projecting back and forth between the two triangles; about the nearest one does, too.
-  [[nodiscard]] Vec3d nearest_place() const {
-    const SurfaceTriangle own{offset_[0], offset_[1], offset_[2], 0};
-    Vec3d c = (offset_[0] + offset_[1] + offset_[2]) / 3.0;
-    for (int i = 0; i < 100; ++i) {
-      const Vec3d before = c;
-      c = nearest_on_triangle(nearest_on_triangle(c, other_), own);
-      if (length(c - before) < kNear * r_ || distance_at(c) < kInside * r_) break;
-    }
-    return c;
-  }
-
-  [[nodiscard]] DepthAtCorners tangent(Vec3d at) const {
-    const Vec3d foot = nearest_on_triangle(at, other_);
-    const double distance = length(at - foot);
-    if (!(distance > 0)) return {r_, r_, r_};
-    const Vec3d gradient = (at - foot) / distance;
-    const auto depth = [&](Vec3d c) { return r_ - distance - dot(gradient, c - at); };
-    return {depth(offset_[0]), depth(offset_[1]), depth(offset_[2])};
-  }
-
-  const std::array<Vec3d, 3>& offset_;
-  const SurfaceTriangle& other_;
-  double r_;
-};
 
 // Where a ray comes to what stays, between two of its t.
 struct Border {
@@ -143,16 +73,20 @@ struct Border {
   static constexpr double kSteepest = 5;
 };
 
-bool is_same(const DepthAtCorners& a, const DepthAtCorners& b, double tolerance) {
-  return std::abs(a.d0 - b.d0) < tolerance && std::abs(a.d1 - b.d1) < tolerance &&
-         std::abs(a.d2 - b.d2) < tolerance;
-}
-
 }  // namespace
 
 bool CreasedSolid::is_kept(Vec3d x, Vec3d normal, std::uint32_t region) const {
   const double r = field.at(x);
   return r <= tolerance || !surface.is_near(x - normal * r, r - tolerance, region) ||
+         stays(x, normal, region, r);
+}
+
+bool CreasedSolid::is_kept(const MeshPlace& at, Vec3d x, Vec3d normal, std::uint32_t region) const {
+  if (clear.is_clear(at.triangle, at.u, at.v)) return true;
+  const auto others = near.of(at.triangle);
+  if (!others) return is_kept(x, normal, region);
+  const double r = field.at(x);
+  return r <= tolerance || !surface.is_one_near(*others, x - normal * r, r - tolerance, region) ||
          stays(x, normal, region, r);
 }
 
@@ -163,8 +97,15 @@ bool CreasedSolid::stays(Vec3d x, Vec3d normal, std::uint32_t region, double r) 
 }
 
 VoidCrossing CreasedSolid::cross_void(Vec3d x, Vec3d direction) const {
-  VoidCrossing crossing{{}, surface.first_exit(x, direction, tolerance / length(direction))};
-  crossing.met = pipes.first_entry(x, direction, crossing.exit.t);
+  // Most ways are short: all that lies along a ray is not looked at at once.
+  const double speed = length(direction), least = tolerance / speed;
+  const double reach = std::max(kShortWay * radius / speed, 2 * least);
+  VoidCrossing crossing{{}, surface.first_exit(x, direction, least, reach)};
+  crossing.met = pipes.first_entry(x, direction, std::min(crossing.exit.t, reach));
+  if (!crossing.met && !std::isfinite(crossing.exit.t)) {
+    crossing.exit = surface.first_exit(x, direction, least);
+    crossing.met = pipes.first_entry(x, direction, crossing.exit.t);
+  }
   if (const auto material = first_material(x, direction, crossing)) crossing.met = material;
   return crossing;
 }
@@ -302,34 +243,6 @@ std::optional<EdgeBlend> CreasedSolid::blend_at(Vec3d x, Vec3d normal) const {
     }
   }
   return best;
-}
-
-std::vector<DepthAtCorners> find_depths(const SolidSurface& surface,
-                                        const SurfaceTriangle& triangle, Vec3d normal,
-                                        double radius) {
-  const Vec3d down = normal * radius;
-  const std::array<Vec3d, 3> offset{triangle.p0 - down, triangle.p1 - down, triangle.p2 - down};
-  const Vec3d low = min(offset[0], min(offset[1], offset[2])) - Vec3d(radius);
-  const Vec3d high = max(offset[0], max(offset[1], offset[2])) + Vec3d(radius);
-  std::vector<DepthAtCorners> depths;
-  surface.for_each_near(low, high, [&](const SurfaceTriangle& other) {
-    if (other.region == triangle.region || depths.size() > kMostDepths) return;
-    if (is_beyond_reach(offset, normal, other, (1 - kSame) * radius)) return;
-    if (surface.is_joined(triangle.region, other.region)) return;
-    const auto depth = DepthBound(offset, other, radius).find();
-    if (!depth) return;
-    for (const DepthAtCorners& known : depths) {
-      if (is_same(known, *depth, kSame * radius)) return;
-    }
-    depths.push_back(*depth);
-  });
-  const auto is_everywhere = [](const DepthAtCorners& d) {
-    return std::min({d.d0, d.d1, d.d2}) > 0;
-  };
-  if (depths.size() > kMostDepths || std::ranges::any_of(depths, is_everywhere)) {
-    return {{radius, radius, radius}};
-  }
-  return depths;
 }
 
 }  // namespace arris

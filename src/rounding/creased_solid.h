@@ -20,15 +20,22 @@
 #include "rounding/crease_pipes.h"
 #include "rounding/crease_shape.h"
 #include "rounding/creases.h"
+#include "rounding/near_triangles.h"
 #include "rounding/radius_field.h"
 #include "rounding/solid_surface.h"
 
 namespace arris {
 
-// Where a ray in the void comes to the rounded surface, and where it would leave the sharp solid.
+// Where a ray in the void comes to the rounded surface; if nowhere, where it leaves the sharp solid.
 struct VoidCrossing {
   std::optional<PipeHit> met;
   SolidSurface::Exit exit;
+};
+
+// By a triangle of the caller's mesh and barycentrics.
+struct MeshPlace {
+  std::uint32_t triangle;
+  double u, v;
 };
 
 // An edge between two faces.
@@ -44,12 +51,16 @@ struct CreasedSolid {
   RadiusField field{0};
   double radius = 0;     // the largest
   double tolerance = 0;  // crease_tolerance()
-  ClearCells clear;      // of the caller's triangles
+  // Of the caller's triangles that bands tell little of.
+  ClearCells clear;
+  NearLists near;
 
   // Which part of the balls is surface, for outlines: made on all cores when it is first asked for.
   [[nodiscard]] const CreaseShape& shape() const;
   // Whether a point of a face, whose normal is given, is on the rounded solid.
   [[nodiscard]] bool is_kept(Vec3d x, Vec3d normal, std::uint32_t region) const;
+  [[nodiscard]] bool is_kept(const MeshPlace& at, Vec3d x, Vec3d normal,
+                             std::uint32_t region) const;
   // From a point of the void, or of the sharp surface above it, on along a ray within the sharp solid.
   [[nodiscard]] VoidCrossing cross_void(Vec3d x, Vec3d direction) const;
   // The parts of a convex edge that stay sharp, by fractions of it.
@@ -63,7 +74,7 @@ struct CreasedSolid {
   // which the normal lies. Nothing: there are no such two. Points are relative to the centre, triangles the mesh's.
   [[nodiscard]] std::optional<EdgeBlend> blend_at(Vec3d x, Vec3d normal) const;
   [[nodiscard]] std::size_t bytes() const {
-    return surface.bytes() + pipes.bytes() + field.bytes() + clear.bytes();
+    return surface.bytes() + pipes.bytes() + field.bytes() + clear.bytes() + near.bytes();
   }
 
   // Whether a place of a face that no ball of the radius r can touch stays all the same.
@@ -78,14 +89,5 @@ struct CreasedSolid {
   };
   std::unique_ptr<MadeShape> made_shape = std::make_unique<MadeShape>();
 };
-
-// A linear function of the places of a triangle, by its corners, that is positive wherever the rounding has taken it
-// away, and perhaps beside.
-struct DepthAtCorners {
-  double d0, d1, d2;
-};
-std::vector<DepthAtCorners> find_depths(const SolidSurface& surface,
-                                        const SurfaceTriangle& triangle, Vec3d normal,
-                                        double radius);
 
 }  // namespace arris

@@ -6,6 +6,7 @@
 
 #include "base/parallel_collect.h"
 #include "rounding/creases.h"
+#include "rounding/near_triangles.h"
 #include "rounding/smooth_reach.h"
 #include "rounding/thin_walls.h"
 
@@ -72,16 +73,15 @@ class CreasedMaker {
     surface.set_walls(find_thin_walls({surface, sharp, in_.regions, r_}));
     VariedCreases found = find(surface);
     if (found.curves.empty()) return std::nullopt;
-    std::vector<TriangleBand> bands = parallel_collect<TriangleBand>(
-        triangles_.size(), kTrianglesAtOnce,
-        [&](std::size_t i, auto& list) { append_bands(surface, triangles_[i], list); });
+    auto [bands, lists] = find_bands(surface);
     ClearCells clear = find_clear_cells(surface, bands);
     CreasedSolid solid{std::move(surface),
                        CreasePipes(std::move(found.curves)),
                        std::move(found.field),
                        r_,
                        crease_tolerance(outer_.size(), r_),
-                       std::move(clear)};
+                       std::move(clear),
+                       NearLists(lists)};
     solid.surface.set_firm(faces_that_vanish(solid));
     std::vector<PlainCrease> plain = find_plain_creases(solid, in_.regions.planes);
     append_sharp_parts(solid, found.clamped);
@@ -241,14 +241,34 @@ class CreasedMaker {
     return SurfaceTriangle{at(0), at(1), at(2), in_.regions.region[t], t};
   }
 
-  void append_bands(const SolidSurface& surface, std::uint32_t t,
-                    std::vector<TriangleBand>& bands) const {
-    const std::optional<SurfaceTriangle> triangle = callers_triangle(t);
-    if (!triangle) return;
-    const Vec3d normal = in_.regions.planes[triangle->region].normal;
-    for (const DepthAtCorners& d : find_depths(surface, *triangle, normal, r_)) {
-      bands.push_back({t, {float(d.d0), float(d.d1 - d.d0), float(d.d2 - d.d0), kNone}});
+  struct FoundBands {
+    std::vector<TriangleBand> bands;
+    std::vector<NearLists::List> lists;
+  };
+
+  // Of triangles in their order; lists of those that have bands.
+  [[nodiscard]] FoundBands find_bands(const SolidSurface& surface) const {
+    struct Found {
+      std::uint32_t triangle;
+      NearTriangles near;
+    };
+    const std::vector<Found> found = parallel_collect<Found>(
+        triangles_.size(), kTrianglesAtOnce, [&](std::size_t i, std::vector<Found>& list) {
+          const std::optional<SurfaceTriangle> triangle = callers_triangle(triangles_[i]);
+          if (!triangle) return;
+          const Vec3d normal = in_.regions.planes[triangle->region].normal;
+          NearTriangles near = find_near_triangles(surface, *triangle, normal, r_);
+          if (!near.depths.empty()) list.push_back({triangles_[i], std::move(near)});
+        });
+    FoundBands out;
+    for (const auto& [t, near] : found) {
+      for (const DepthAtCorners& d : near.depths) {
+        out.bands.push_back({t, {float(d.d0), float(d.d1 - d.d0), float(d.d2 - d.d0), kNone}});
+      }
+      if (near.others) out.lists.push_back({t, *near.others});
     }
+    std::ranges::sort(out.lists, {}, &NearLists::List::triangle);
+    return out;
   }
 
   // Of triangles that bands tell little of. Those of a triangle come one after another.

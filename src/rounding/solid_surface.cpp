@@ -100,12 +100,24 @@ SolidSurface::SolidSurface(std::vector<SurfaceTriangle> triangles, double reach)
 
 bool SolidSurface::is_near(Vec3d x, double distance, std::uint32_t but_region) const {
   return tree_.any_near(x - Vec3d(distance), x + Vec3d(distance), [&](std::uint32_t i) {
-    const SurfaceTriangle& t = triangles_[i];
-    if (t.region == but_region || is_plainly_beyond(x, t, distance)) return false;
-    const Vec3d foot = nearest_on_triangle(x, t);
-    return length_squared(x - foot) < distance * distance && !is_joined(but_region, t.region) &&
-           !is_on_joined(foot, kTouching * distance, but_region);
+    return triangles_[i].region != but_region &&
+           reaches_near(triangles_[i], x, distance, but_region);
   });
+}
+
+bool SolidSurface::is_one_near(std::span<const std::uint32_t> triangles, Vec3d x, double distance,
+                               std::uint32_t but_region) const {
+  return std::any_of(triangles.begin(), triangles.end(), [&](std::uint32_t i) {
+    return reaches_near(triangles_[i], x, distance, but_region);
+  });
+}
+
+bool SolidSurface::reaches_near(const SurfaceTriangle& t, Vec3d x, double distance,
+                                std::uint32_t face) const {
+  if (is_plainly_beyond(x, t, distance)) return false;
+  const Vec3d foot = nearest_on_triangle(x, t);
+  return length_squared(x - foot) < distance * distance && !is_joined(face, t.region) &&
+         !is_on_joined(foot, kTouching * distance, face);
 }
 
 bool SolidSurface::is_on_joined(Vec3d x, double tolerance, std::uint32_t face) const {
@@ -121,8 +133,9 @@ void SolidSurface::set_walls(ThinWalls walls) {
   wall_tree_ = BoxTree(boxes_of(triangles_, walls.sides, reach_));
 }
 
-SolidSurface::Exit SolidSurface::first_exit(Vec3d origin, Vec3d direction, double after) const {
-  Exit exit{std::numeric_limits<double>::infinity(), kNone, {}};
+SolidSurface::Exit SolidSurface::first_exit(Vec3d origin, Vec3d direction, double after,
+                                            double before) const {
+  Exit exit{before, kNone, {}};
   tree_.for_each_along(origin, direction, after, exit.t, [&](std::uint32_t i) {
     const SurfaceTriangle& t = triangles_[i];
     const Vec3d normal = cross(t.p1 - t.p0, t.p2 - t.p0);
@@ -135,7 +148,8 @@ SolidSurface::Exit SolidSurface::first_exit(Vec3d origin, Vec3d direction, doubl
     const double at = ahead / across;
     if (at > after && at < exit.t) exit = {at, t.region, normal};
   });
-  if (exit.region != kNone) exit.normal = normalize(exit.normal);
+  if (exit.region == kNone) return {INFINITY, kNone, {}};
+  exit.normal = normalize(exit.normal);
   return exit;
 }
 

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <span>
 #include <utility>
@@ -72,6 +73,9 @@ class SolidSurface {
   // Whether a triangle of another region, one that isn't joined to it, is nearer to x than `distance`; where it borders
   // on one that is joined, that is the nearer.
   [[nodiscard]] bool is_near(Vec3d x, double distance, std::uint32_t but_region) const;
+  // The same, with no other triangles than these.
+  [[nodiscard]] bool is_one_near(std::span<const std::uint32_t> triangles, Vec3d x, double distance,
+                                 std::uint32_t but_region) const;
   // Whether a firm triangle reaches into a box.
   [[nodiscard]] bool has_firm_near(Vec3d low, Vec3d high) const {
     return has_firm() && tree_.any_near(low, high, [&](std::uint32_t i) {
@@ -80,13 +84,14 @@ class SolidSurface {
   }
 
   // The t > after at which the ray first leaves through a triangle, with its region and unit normal; infinity if it
-  // doesn't. A ray through an edge meets both triangles.
+  // doesn't before `before`. A ray through an edge meets both triangles.
   struct Exit {
     double t;
     std::uint32_t region;
     Vec3d normal;
   };
-  [[nodiscard]] Exit first_exit(Vec3d origin, Vec3d direction, double after) const;
+  [[nodiscard]] Exit first_exit(Vec3d origin, Vec3d direction, double after,
+                                double before = INFINITY) const;
   // Whether a ray enters through a triangle within ]after, before[.
   [[nodiscard]] bool is_entered(Vec3d origin, Vec3d direction, double after, double before) const;
 
@@ -108,6 +113,9 @@ class SolidSurface {
   [[nodiscard]] std::size_t bytes() const;
 
  private:
+  // Whether a place of a triangle that is nearer to x than `distance` cuts into what touches a face.
+  [[nodiscard]] bool reaches_near(const SurfaceTriangle& t, Vec3d x, double distance,
+                                  std::uint32_t face) const;
   // Whether a place is on a face that is joined to another one.
   [[nodiscard]] bool is_on_joined(Vec3d x, double tolerance, std::uint32_t face) const;
 
