@@ -81,9 +81,24 @@ class DepthBound {
   double r_;
 };
 
-bool is_same(const DepthAtCorners& a, const DepthAtCorners& b, double tolerance) {
-  return std::abs(a.d0 - b.d0) < tolerance && std::abs(a.d1 - b.d1) < tolerance &&
-         std::abs(a.d2 - b.d2) < tolerance;
+// Whether b is positive wherever a is, but for a rim as narrow as the tolerance.
+bool is_within(const DepthAtCorners& a, const DepthAtCorners& b, double tolerance) {
+  const std::array<double, 3> at{a.d0, a.d1, a.d2}, other{b.d0, b.d1, b.d2};
+  for (std::size_t i = 0; i < 3; ++i) {
+    const std::size_t k = (i + 1) % 3;
+    if (at[i] > 0 && other[i] < -tolerance) return false;
+    if ((at[i] > 0) == (at[k] > 0)) continue;
+    const double part = at[i] / (at[i] - at[k]);  // where a is 0
+    if (other[i] + (other[k] - other[i]) * part < -tolerance) return false;
+  }
+  return true;
+}
+
+void add_depth(const DepthAtCorners& depth, double tolerance, std::vector<DepthAtCorners>& depths) {
+  const auto holds = [&](const DepthAtCorners& d) { return is_within(depth, d, tolerance); };
+  if (std::any_of(depths.begin(), depths.end(), holds)) return;
+  std::erase_if(depths, [&](const DepthAtCorners& d) { return is_within(d, depth, tolerance); });
+  depths.push_back(depth);
 }
 
 }  // namespace
@@ -108,10 +123,7 @@ NearTriangles find_near_triangles(const SolidSurface& surface, const SurfaceTria
     if (depths.size() <= kMostDepths) {
       const auto depth = DepthBound(offset, other, radius).find();
       if (!depth) return;
-      const auto is_known = [&](const DepthAtCorners& known) {
-        return is_same(known, *depth, kSame * radius);
-      };
-      if (std::none_of(depths.begin(), depths.end(), is_known)) depths.push_back(*depth);
+      add_depth(*depth, kSame * radius, depths);
     }
     if (others.size() <= kMostOthers) others.push_back(index);
   });

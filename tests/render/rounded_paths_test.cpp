@@ -1,6 +1,6 @@
 // rounded_paths_test.cpp — light that goes from surface to surface of a rounded solid stays on its side of it
-// What       paths that are reflected diffusely, outside or within: a surface that one of them meets from the other side
-//            is one that it came through, a hole in the rounding or between it and the mesh
+// What       paths that are reflected diffusely, outside or within: a surface that one of them meets from the other
+//            side is one that it came through, a hole in the rounding or between it and the mesh
 #include <gtest/gtest.h>
 
 #include <fmt/format.h>
