@@ -286,30 +286,34 @@ class CreasedMaker {
           const double area =
               0.5 * length(cross(triangle.p1 - triangle.p0, triangle.p2 - triangle.p0));
           if (!(area > kLargeArea * r_ * r_)) return;
-          const double share = spared_share(surface, triangle, normal, of[i]);
-          if (!(share * area > kLargeArea * r_ * r_)) return;
+          if (!spares_searches(surface, triangle, of[i], kLargeArea * r_ * r_ / area)) return;
           ClearCells::Grid grid = ClearCells::make_grid(surface, triangle, normal, r_);
           if (!grid.rows.empty()) grids.push_back(std::move(grid));
         }));
   }
 
-  // How much of a triangle lies in its bands and is kept, nearly.
-  [[nodiscard]] double spared_share(const SolidSurface& surface, const SurfaceTriangle& triangle,
-                                    Vec3d normal, std::span<const TriangleBand> bands) const {
+  // Whether more than a share of a triangle lies in its bands and is kept, nearly.
+  [[nodiscard]] bool spares_searches(const SolidSurface& surface, const SurfaceTriangle& triangle,
+                                     std::span<const TriangleBand> bands, double share) const {
     constexpr int kSamples = 12;  // along each side
-    const Vec3d along_u = triangle.p1 - triangle.p0, along_v = triangle.p2 - triangle.p0;
-    const Vec3d corner = triangle.p0 - normal * r_;
-    int spared = 0, all = 0;
+    const Vec3d down = in_.regions.planes[triangle.region].normal * r_;
+    std::vector<Vec3d> in_bands;  // centres of balls
     for (int i = 0; i < kSamples; ++i) {
-      for (int j = 0; i + j < kSamples; ++j, ++all) {
+      for (int j = 0; i + j < kSamples; ++j) {
         const float u = (float(i) + 0.33F) / kSamples, v = (float(j) + 0.33F) / kSamples;
         const auto holds = [&](const TriangleBand& b) { return b.band.depth(u, v) > 0; };
         if (std::none_of(bands.begin(), bands.end(), holds)) continue;
-        const Vec3d center = corner + along_u * double(u) + along_v * double(v);
-        spared += surface.is_near(center, r_, triangle.region) ? 0 : 1;
+        in_bands.push_back(triangle.p0 + (triangle.p1 - triangle.p0) * double(u) +
+                           (triangle.p2 - triangle.p0) * double(v) - down);
       }
     }
-    return double(spared) / all;
+    const double least = share * (kSamples * (kSamples + 1) / 2);
+    std::size_t spared = 0;
+    for (std::size_t i = 0; i < in_bands.size(); ++i) {
+      if (!(double(spared + in_bands.size() - i) > least)) return false;
+      spared += surface.is_near(in_bands[i], r_, triangle.region) ? 0 : 1;
+    }
+    return double(spared) > least;
   }
 
   const CreasedInput& in_;

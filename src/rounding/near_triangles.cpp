@@ -81,23 +81,30 @@ class DepthBound {
   double r_;
 };
 
-// Whether b is positive wherever a is, but for a rim as narrow as the tolerance.
-bool is_within(const DepthAtCorners& a, const DepthAtCorners& b, double tolerance) {
+bool is_same(const DepthAtCorners& a, const DepthAtCorners& b, double tolerance) {
+  return std::abs(a.d0 - b.d0) < tolerance && std::abs(a.d1 - b.d1) < tolerance &&
+         std::abs(a.d2 - b.d2) < tolerance;
+}
+
+// Whether b is positive wherever a is.
+bool is_within(const DepthAtCorners& a, const DepthAtCorners& b) {
   const std::array<double, 3> at{a.d0, a.d1, a.d2}, other{b.d0, b.d1, b.d2};
   for (std::size_t i = 0; i < 3; ++i) {
     const std::size_t k = (i + 1) % 3;
-    if (at[i] > 0 && other[i] < -tolerance) return false;
+    if (at[i] > 0 && !(other[i] > 0)) return false;
     if ((at[i] > 0) == (at[k] > 0)) continue;
     const double part = at[i] / (at[i] - at[k]);  // where a is 0
-    if (other[i] + (other[k] - other[i]) * part < -tolerance) return false;
+    if (!(other[i] + (other[k] - other[i]) * part > 0)) return false;
   }
   return true;
 }
 
 void add_depth(const DepthAtCorners& depth, double tolerance, std::vector<DepthAtCorners>& depths) {
-  const auto holds = [&](const DepthAtCorners& d) { return is_within(depth, d, tolerance); };
+  const auto holds = [&](const DepthAtCorners& d) {
+    return is_same(depth, d, tolerance) || is_within(depth, d);
+  };
   if (std::any_of(depths.begin(), depths.end(), holds)) return;
-  std::erase_if(depths, [&](const DepthAtCorners& d) { return is_within(d, depth, tolerance); });
+  std::erase_if(depths, [&](const DepthAtCorners& d) { return is_within(d, depth); });
   depths.push_back(depth);
 }
 

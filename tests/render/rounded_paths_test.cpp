@@ -28,7 +28,8 @@ struct Tally {
 
 class Walker {
  public:
-  Walker(const TriangleSoup& mesh, double radius, RoundEdges edges)
+  Walker(const TriangleSoup& mesh, double radius, RoundEdges edges,
+         std::vector<EdgeRule> rules = {})
       : name_(mesh.name), far_(2 * mesh.size()) {
     Camera camera;
     camera.position = {2, -3, 2};
@@ -43,6 +44,7 @@ class Walker {
     scene.rounding->method = RoundMethod::exact;
     scene.rounding->radius = radius;
     scene.rounding->edges = edges;
+    scene.rounding->rules = std::move(rules);
     scene_ = prepare_scene(std::move(scene));
   }
 
@@ -147,6 +149,36 @@ TEST(RoundedPaths, do_not_come_out_of_the_solid) {
     EXPECT_GT(all.rounded, 10000);
     EXPECT_LE(all.wrong * 100000, all.hits) << all.examples;
   }
+}
+
+// Edges in parts of the solid, up to a plane each, have radii of their own.
+std::vector<EdgeRule> random_rules(const CreasedCase& c, Random& rng) {
+  std::vector<EdgeRule> rules;
+  for (int i = 0; i < 3; ++i) {
+    Vec3d low(-10), high(10);
+    const int axis = uniform_int(rng, 0, 2);
+    high[axis] =
+        c.mesh.positions[std::size_t(uniform_int(rng, 0, int(c.mesh.positions.size()) - 1))][axis];
+    EdgeRule rule;
+    rule.radius = c.radius * uniform(rng, 0.2, 1);
+    rule.box = {low, high};
+    rules.push_back(rule);
+  }
+  return rules;
+}
+
+TEST(RoundedPaths, stay_on_their_side_of_edges_with_radii_of_their_own) {
+  Random rng(8);
+  Tally outside, within;
+  for (const CreasedCase& c : make_path_cases()) {
+    for (int i = 0; i < 4; ++i) {
+      Walker walker(c.mesh, c.radius, RoundEdges::convex, random_rules(c, rng));
+      walker.walk(10000, outside);
+      walker.walk_within(500, within);
+    }
+  }
+  EXPECT_LE(outside.wrong * 100000, outside.hits) << outside.examples;
+  EXPECT_LE(within.wrong * 100000, within.hits) << within.examples;
 }
 
 // A fillet's side in a gap is met only by rays that come to the mesh behind it.
