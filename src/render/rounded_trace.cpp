@@ -132,8 +132,8 @@ Verdict judge(const RoundedGeometry& g, const TraceRay& ray, const Candidate& c)
   if (settled && g.is_kept(c.triangle, c.u, c.v)) return verdict;
   Resolution r = g.rounding->resolve(local, {c.triangle, c.u, c.v, c.t}, start);
   const bool into_fillet = r.hit.feature == Feature::fillet;
-  if (r.outcome == Resolution::Outcome::passed && !verdict.entering &&
-      start == RayStart::inside && !into_fillet) {
+  if (r.outcome == Resolution::Outcome::passed && !verdict.entering && start == RayStart::inside &&
+      !into_fillet) {
     // Where it starts, by the errors of borders of what stays, the solid ends already.
     r = {Resolution::Outcome::moved, {0, Vec3d(face.normal), Feature::edge}};
   }
