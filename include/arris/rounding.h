@@ -128,7 +128,7 @@ struct RoundingNote {
   }
 };
 
-// An edge of the mesh whose radius has been made smaller because there is no room for it.
+// An edge, or part of one, convex or concave, that has a smaller radius or stays sharp because there is no room.
 struct ClampedEdge {
   Vec3d from, to;     // in the mesh's space
   double radius = 0;  // 0: it stays sharp

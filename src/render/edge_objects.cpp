@@ -128,7 +128,7 @@ FaceVoids voids_of(const PreparedScene& prepared, std::uint32_t geometry) {
   return voids;
 }
 
-// An edge between two faces of a creased solid.
+// An edge between two faces of a creased solid, or of one with fillets.
 class CreasedEdge {
  public:
   CreasedEdge(const Rounding::Data& data, const Affine3d& rounding_from_object,
@@ -313,8 +313,8 @@ Sphere EdgeObjects::bounding_sphere(const PreparedScene& prepared, std::uint32_t
 }
 
 // All edges between the same two planes lie on one line: an edge is rounded if one of the arcs between its faces
-// is beside it. Of creased solids and of fillets the parts that stay sharp are known; edges without a fillet stay but
-// where a rounding ends at them.
+// is beside it. Of creased solids and of fillets the parts that stay sharp are known; concave edges without a fillet
+// stay, except where a rounding ends at them.
 void EdgeObjects::find_rounded(const PreparedScene& prepared, ObjectEdges& object) {
   object.rounded.clear();
   object.kept.clear();

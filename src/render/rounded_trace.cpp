@@ -134,7 +134,7 @@ Verdict judge(const RoundedGeometry& g, const TraceRay& ray, const Candidate& c)
   const bool into_fillet = r.hit.feature == Feature::fillet;
   if (r.outcome == Resolution::Outcome::passed && !verdict.entering && start == RayStart::inside &&
       !into_fillet) {
-    // Where it starts, by the errors of borders of what stays, the solid ends already.
+    // A ray that starts inside can't pass: borders of what stays are known roughly, and the solid ends where it starts.
     r = {Resolution::Outcome::moved, {0, Vec3d(face.normal), Feature::edge}};
   }
   verdict.outcome = r.outcome;

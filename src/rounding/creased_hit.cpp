@@ -41,7 +41,7 @@ class CreasedHit {
 
   // Nothing: the local network decides.
   [[nodiscard]] std::optional<Resolution> resolve(const Ray& ray, const MeshHit& hit) const {
-    // From a local rounding's void: the solid is closed, and its inside is not met.
+    // Out of a void. That of a local rounding: the solid is closed, and its inside is not met.
     if (!entering_ && start_ == RayStart::outside) {
       return inner_ == nullptr ? make(Resolution::Outcome::passed, at_.t, normal_, Feature::face)
                                : out_of_void(ray, hit);
@@ -126,7 +126,7 @@ class CreasedHit {
     return make(Resolution::Outcome::passed, at_.t, normal_, Feature::fillet);
   }
 
-  // A ray that starts in a fillet and comes to a face from outside has left it by its side in a gap that stays.
+  // A ray that starts in a fillet and comes to a face from outside has left the fillet by its side, in a gap.
   [[nodiscard]] std::optional<Resolution> out_of_fillet(const Ray& ray) const {
     if (filled_ == nullptr) return std::nullopt;
     const auto met = filled_->outside.cross_void(ray.origin - solid_.center, at_.direction).met;
@@ -140,7 +140,7 @@ class CreasedHit {
     // A ray from the face, or from a fillet that has no thickness there, may start behind it.
     if (at_.t * at_.scale <= inner_->tolerance) return passed;
     const Vec3d origin = ray.origin - solid_.center;
-    // What is met in any order may lie beyond where the ray enters, and is judged.
+    // Hits are judged in any order: this one may lie beyond where the ray enters again.
     const double tolerance = inner_->tolerance, end = at_.t * at_.scale - tolerance;
     if (inner_->surface.is_entered(origin, at_.direction, tolerance, end)) return passed;
     if (const auto met = inner_->cross_void(origin, at_.direction).met) {

@@ -97,7 +97,7 @@ bool CreasedSolid::stays(Vec3d x, Vec3d normal, std::uint32_t region, double r) 
 }
 
 VoidCrossing CreasedSolid::cross_void(Vec3d x, Vec3d direction) const {
-  // Most ways are short: all that lies along a ray is not looked at at once.
+  // Most ways are short: what lies far along the ray is not looked at at first.
   const double speed = length(direction), least = tolerance / speed;
   const double reach = std::max(kShortWay * radius / speed, 2 * least);
   VoidCrossing crossing{{}, surface.first_exit(x, direction, least, reach)};

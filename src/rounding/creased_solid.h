@@ -1,4 +1,4 @@
-// creased_solid.h — a solid of any shape whose every edge is flat, convex or concave, rounded exactly
+// creased_solid.h — a solid of any shape, rounded exactly
 // What       a hit on the mesh is kept iff the ball that touches the face there fits into the solid, or can't grow to
 //            the radius from there (thin_walls.h); a ray that is in the void between the sharp and the rounded surface
 //            meets a pipe (crease_pipes.h), or material that stays, before it leaves the sharp solid, or passes
@@ -51,9 +51,8 @@ struct CreasedSolid {
   RadiusField field{0};
   double radius = 0;     // the largest
   double tolerance = 0;  // crease_tolerance()
-  // Of the caller's triangles that bands tell little of.
-  ClearCells clear;
-  NearLists near;
+  ClearCells clear;      // of the caller's triangles of which bands tell little
+  NearLists near;        // of those with bands, and few others near
 
   // Which part of the balls is surface, for outlines: made on all cores when it is first asked for.
   [[nodiscard]] const CreaseShape& shape() const;

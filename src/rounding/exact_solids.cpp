@@ -3,6 +3,7 @@
 #include <cmath>
 #include <memory>
 #include <optional>
+#include <set>
 #include <utility>
 
 #include "base/parallel_for.h"
@@ -122,7 +123,6 @@ class ExactMaker {
       for (const ClampedPart& part : made[i]->clamped) {
         made_.clamped.push_back(
             {turned_edge(part.half_edge), part.radius, 1 - part.to, 1 - part.from});
-        if (part.from == 0 && part.to == 1) --data_.report.rounded_edges;
       }
       plain_.push_back({wanted[i], true, std::move(made[i]->plain)});
       fill(wanted[i], std::move(made[i]->solid), plain_.back().creases);
@@ -146,9 +146,13 @@ class ExactMaker {
     Solid& solid = data_.solids[s];
     solid.filled = std::uint32_t(data_.filled.size());
     data_.filled.push_back(std::make_unique<const FilledSolid>(std::move(outside), plain));
-    const std::uint64_t edges = concave_edges_of(s);
-    made_.filled_edges += edges;
-    data_.report.rounded_edges += edges;
+    made_.filled_edges += concave_edges_of(s);
+    std::set<FacePair> edges;  // those between two faces are one
+    for_edges_of(EdgeKind::concave, in_.welded, in_.kinds, s, [&](std::uint32_t h) {
+      const std::uint32_t twin = in_.welded.twin[h];
+      edges.insert(std::minmax(in_.regions.region[h / 3], in_.regions.region[twin / 3]));
+    });
+    data_.report.rounded_edges += edges.size();
     const FilledSolid& filled = *data_.filled.back();
     for (std::uint32_t i = 0; i < filled.fillets.part_count(); ++i) {
       const Box box = filled.fillets.box_of(i);

@@ -32,7 +32,7 @@ struct ExactInput {
 struct MadeExact {
   std::vector<TriangleBand> bands;
   std::vector<ClampedPart> clamped;
-  std::uint64_t filled_edges = 0;  // concave ones of solids with fillets
+  std::uint64_t filled_edges = 0;  // pieces of concave ones, of solids with fillets
   // Shells of solids with hollows in whose walls no ball fits: rounded by themselves they might reach into one another.
   std::vector<std::uint32_t> left_sharp;
 };

@@ -16,6 +16,8 @@ constexpr double kLeastWeight = -1e-6;
 constexpr double kOnBall = 1e-6;
 // Two faces' contacts on their common edge are one.
 constexpr double kSame = 1e-5;
+// Of the radius: what lies behind the end of a fillet, along it, is longer by no more than this.
+constexpr double kWayAtEnd = 3;
 // Of the radius: so far behind the surface of a fillet is something of it.
 constexpr double kBehind = 1e-3;
 
@@ -45,9 +47,10 @@ Fillets::Fillets(const CreasedSolid& outside, std::span<const PlainCrease> plain
     const CreaseCurve& curve = outside.pipes.curve_of(i);
     const Contacts contacts = contacts_at(curve.at(0.5 * (curve.u0 + curve.u1)));
     // Around a corner the balls touch nothing else: the seam of two offsets, not a crease. Smooth edges stay.
-    if (contacts.count < 2 || contacts.at_smooth_edge) continue;
+    if (contacts.count < 2 || contacts.at_smooth_edge || !is_backed(curve, contacts)) continue;
     Part part{i, curve.is_line && contacts.count == 2, contacts.toward[0], contacts.toward[1]};
     part.among_walls = is_among_walls(curve);
+    any_among_walls_ = any_among_walls_ || part.among_walls;
     while (!plain.empty() && plain.front().part < i) plain = plain.subspan(1);
     if (!plain.empty() && plain.front().part == i) {
       part.plain0 = dot(plain.front().axis, plain.front().p0 - curve.center);
@@ -98,6 +101,27 @@ Fillets::Contacts Fillets::contacts_at(Vec3d c) const {
     }
   }
   return contacts;
+}
+
+// Whether what lies behind the middle of a part ends, about where the planes of its contacts meet, at the mesh, or at
+// balls on the other side. In the mouth of an undercut groove it does not: no crease is known between its lips.
+bool Fillets::is_backed(const CreaseCurve& curve, const Contacts& contacts) const {
+  Vec3d middle;
+  double least_cosine = 1;
+  for (std::size_t i = 0; i < contacts.count; ++i) {
+    middle += contacts.toward[i];
+    for (std::size_t j = 0; j < i; ++j) {
+      least_cosine = std::min(least_cosine, dot(contacts.toward[i], contacts.toward[j]));
+    }
+  }
+  const double half_cosine = std::sqrt(std::max(0.5 * (1 + least_cosine), 0.0));
+  if (half_cosine < kSame || length(middle) < kSame) return true;
+  const Vec3d n = normalize(middle);
+  const double r = outside_->radius, tolerance = outside_->tolerance;
+  const double most = 2 * (r / half_cosine - r) + kWayAtEnd * r;
+  const Vec3d x = curve.at(0.5 * (curve.u0 + curve.u1)) + n * r;
+  return std::isfinite(outside_->surface.first_exit(x, n, -tolerance, most).t) ||
+         outside_->pipes.first_entry(x + n * tolerance, n, most).has_value();
 }
 
 bool Fillets::is_among_walls(const CreaseCurve& curve) const {
@@ -169,9 +193,15 @@ std::optional<FilletCrossing> Fillets::meet(std::uint32_t index, Vec3d origin, V
   };
   double after = -INFINITY;
   while (const auto span = outside_->pipes.span_of(part.pipe, origin, direction, after)) {
-    // Into the ball is out of the fillet.
-    if (wanted.exits && counts(span->in))
-      return FilletCrossing{span->in.t, -span->in.normal, false};
+    // Into the ball is out of the fillet. In a gap, a ray may have come into it by its side.
+    if (counts(span->in)) {
+      if (wanted.entries && any_among_walls_) {
+        const auto met = outside_->cross_void(origin + direction * span->in.t, -direction).met;
+        const double t = met ? span->in.t - met->t : -INFINITY;
+        if (t > wanted.t_min) return FilletCrossing{t, -met->normal, true};
+      }
+      if (wanted.exits) return FilletCrossing{span->in.t, -span->in.normal, false};
+    }
     if (wanted.entries && counts(span->out)) {
       return FilletCrossing{span->out.t, -span->out.normal, true};
     }

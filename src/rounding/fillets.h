@@ -63,6 +63,7 @@ class Fillets {
     Vec3d low{}, high{};  // see box_of()
   };
 
+  [[nodiscard]] bool is_backed(const CreaseCurve& curve, const Contacts& contacts) const;
   [[nodiscard]] bool is_among_walls(const CreaseCurve& curve) const;
   void set_box(Part& part) const;
   [[nodiscard]] Contacts contacts_at(Vec3d c) const;
@@ -70,6 +71,7 @@ class Fillets {
 
   const CreasedSolid* outside_;
   std::vector<Part> parts_;
+  bool any_among_walls_ = false;
 };
 
 }  // namespace arris

@@ -17,7 +17,7 @@ namespace {
 constexpr std::size_t kTrianglesAtOnce = 256, kEdgesAtOnce = 64, kGridsAtOnce = 16;
 // Pairs of triangles within the radius that are too many on a curved surface; and how they are estimated.
 constexpr std::size_t kMostPairs = 8'000'000, kSampledTriangles = 256;
-// Of the radius' square: bands of less are left as they are.
+// Of the radius' square: triangles of which less would be spared have no grid.
 constexpr double kLargeArea = 16;
 // Relative to the radius: a place this near to a crease is of a rounded edge or corner.
 constexpr double kNearCrease = 2;
@@ -246,7 +246,7 @@ class CreasedMaker {
     std::vector<NearLists::List> lists;
   };
 
-  // Of triangles in their order; lists of those that have bands.
+  // Bands in the order of the triangles; lists of those that have bands and few others near, by triangle.
   [[nodiscard]] FoundBands find_bands(const SolidSurface& surface) const {
     struct Found {
       std::uint32_t triangle;

@@ -225,20 +225,30 @@ class RoundingMaker {
                           *data_);
     bands_ = std::move(made.bands);
     filled_edges_ = made.filled_edges;
-    // Pieces of an edge are one.
-    std::set<FacePair> whole, parts;
+    std::map<FacePair, std::int64_t> sharp;  // how many of an edge's pieces are, all along
     for (const ClampedPart& e : made.clamped) {
       add_clamped(e);
       if (e.radius > 0) {
         ++clamped_;
       } else {
-        (e.from == 0 && e.to == 1 ? whole : parts).insert(faces_at(e.half_edge));
+        sharp[faces_at(e.half_edge)] += e.from == 0 && e.to == 1 ? 1 : 0;
       }
     }
+    count_sharp_edges(std::move(sharp));
     for (const std::uint32_t s : made.left_sharp) leave_shell_sharp(s);
-    left_in_creased_ = whole.size();
-    sharp_in_part_ = std::uint64_t(std::ranges::count_if(
-        parts, [&](const FacePair& faces) { return !whole.contains(faces); }));
+  }
+
+  // Pieces of an edge are one.
+  void count_sharp_edges(std::map<FacePair, std::int64_t> sharp_pieces) {
+    if (sharp_pieces.empty()) return;
+    for (std::uint32_t h = 0; h < kinds_.size(); ++h) {
+      const bool may_be_rounded = kinds_[h] == EdgeKind::convex || kinds_[h] == EdgeKind::concave;
+      if (!may_be_rounded || h > welded_.twin[h] || welded_.twin[h] > kLastHalfEdge) continue;
+      const auto edge = sharp_pieces.find(faces_at(h));
+      if (edge != sharp_pieces.end()) --edge->second;
+    }
+    for (const auto& [faces, beyond] : sharp_pieces)
+      ++(beyond < 0 ? sharp_in_part_ : left_in_creased_);
   }
 
   [[nodiscard]] FacePair faces_at(std::uint32_t h) const {

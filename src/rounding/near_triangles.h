@@ -1,6 +1,6 @@
 // near_triangles.h — what balls that touch a triangle may reach into
 // What       linear bounds on how deep they do, from which bands are made (bands.h); and, for triangles that have few
-//            others near, lists of these, so that hits within bands need no search
+//            others near, lists of these, so that whether a ball fits there needs no search of the tree
 // In / Out   coordinates relative to the solid's centre
 #pragma once
 
@@ -14,15 +14,15 @@
 
 namespace arris {
 
-// A linear function of the places of a triangle, by its corners, that is positive wherever the rounding has taken it
-// away, and perhaps beside.
+// A linear function of the places of a triangle, by its corners. Wherever the rounding has taken it away, and perhaps
+// beside, at least one of its functions is positive.
 struct DepthAtCorners {
   double d0, d1, d2;
 };
 
 struct NearTriangles {
   std::vector<DepthAtCorners> depths;
-  // The surface's: all into which a ball may reach. Nothing: they are too many for a list.
+  // By their place in surface.triangles(): all into which a ball may reach. Nothing: they are too many for a list.
   std::optional<std::vector<std::uint32_t>> others;
 };
 

@@ -73,7 +73,7 @@ class SolidSurface {
   // Whether a triangle of another region, one that isn't joined to it, is nearer to x than `distance`; where it borders
   // on one that is joined, that is the nearer.
   [[nodiscard]] bool is_near(Vec3d x, double distance, std::uint32_t but_region) const;
-  // The same, with no other triangles than these.
+  // The same of these alone, by their place in triangles(); none is of that region.
   [[nodiscard]] bool is_one_near(std::span<const std::uint32_t> triangles, Vec3d x, double distance,
                                  std::uint32_t but_region) const;
   // Whether a firm triangle reaches into a box.

@@ -3,6 +3,7 @@
 //            the distance to the surface rises. Where it comes to the radius, the place is beside an edge or corner and
 //            rounding takes it away. Where it gets stuck, or touches opposite faces, it is between the sides of a thin
 //            wall, or at the rim of one.
+//            Of the space outside, from which fillets are made, the same is true of air: gaps stay.
 // In / Out   coordinates relative to the solid's centre
 // Source     A. Lieutier, "Any open bounded subset of R^n has the same homotopy type as its medial axis" (2004): the
 //            generalized gradient of the distance, and its flow

@@ -266,6 +266,8 @@ TEST(Fillets, gaps_too_narrow_for_the_ball_stay_sharp) {
     }
   }
   EXPECT_EQ(shooter.rounding().report().clamped.size(), 2U);
+  // Five of the pocket's floor, as the slot parts one, and four upright ones.
+  EXPECT_EQ(shooter.rounding().report().rounded_edges, 9U);
   // In the slot, and about its other end.
   Random rng(5);
   for (int i = 0; i < 4000; ++i) {
@@ -289,6 +291,25 @@ TEST(Fillets, gaps_too_narrow_for_the_ball_stay_sharp) {
   }
   EXPECT_GT(tally.fillets, 20);
   EXPECT_LE(tally.wrong * 300, tally.rays) << fmt::format("{}", fmt::join(tally.examples, "\n"));
+}
+
+// A dovetail whose mouth is narrower than the ball that fits within: the mouth stays open.
+TEST(Fillets, mouths_of_undercut_grooves_stay_open) {
+  const Outline dovetail{{-5, 0},  {5, 0},    {5, 3},    {0.3, 3},
+                         {1.5, 1}, {-1.5, 1}, {-0.3, 3}, {-5, 3}};
+  const CreasedCase groove{prism_over("dovetail", dovetail, {6, 1, 0}), 0.5};
+  for (const RoundEdges edges : {RoundEdges::concave, RoundEdges::both}) {
+    FilletShooter shooter(groove, edges, 9);
+    EXPECT_GT(shooter.rounding().fillet_boxes().size(), 0U);
+    Random rng(5);
+    for (int i = 0; i < 1000; ++i) {
+      const Vec3d target(uniform(rng, -0.25, 0.25), 1, uniform(rng, 2, 4));
+      const Vec3d d = normalize(Vec3d(0, -1, uniform(rng, -0.02, 0.02)));
+      const auto hit = trace({target - d * 10, d}, shooter.object());
+      ASSERT_TRUE(hit.has_value()) << i;
+      EXPECT_NEAR(hit->t, 10, 1e-6) << i << " " << name_of(hit->feature);
+    }
+  }
 }
 
 // Whatever way they go, and also where they come to the mesh within the material.
