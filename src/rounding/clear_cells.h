@@ -1,7 +1,7 @@
 // clear_cells.h — where on large triangles a ball touches nothing but their face, in cells
 // What       Bands bound the void by half planes, which say little of a large triangle that reaches far beyond the
-//            short edges that bound what is taken from it: most hits in such bands are kept all the same. Those triangles get
-//            a grid of cells in their barycentrics; in those that are clear no search is needed.
+//            short edges that bound what is taken from it: most hits in such bands are kept all the same. Those
+//            triangles get a grid of cells in their barycentrics; in those that are clear no search is needed.
 // Guarantee  a ball of the radius that touches the face in a clear cell is nowhere near another face, but joined ones
 // Cost       rectangles of cells by halves, down to those that a border crosses: each looks at what is near to the
 //            one of which it is part; a bit for each cell
