@@ -8,19 +8,10 @@
 #include <vector>
 
 #include "support/creased_solids.h"
+#include "support/surface_of.h"
 
 namespace arris::oracle {
 namespace {
-
-// Each triangle a face of its own.
-SolidSurface surface_of(const TriangleSoup& mesh, double radius) {
-  std::vector<SurfaceTriangle> triangles;
-  for (std::uint32_t i = 0; i < mesh.triangles.size(); ++i) {
-    const auto at = [&](std::size_t k) { return Vec3d(mesh.positions[mesh.triangles[i][k]]); };
-    triangles.push_back({at(0), at(1), at(2), i, i});
-  }
-  return {std::move(triangles), radius};
-}
 
 struct Tally {
   int taken = 0, unbounded = 0, unlisted = 0, lists = 0;
