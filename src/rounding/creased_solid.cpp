@@ -9,6 +9,7 @@
 #include "base/frame.h"
 #include "base/parallel_for.h"
 #include "rounding/crease_grooves.h"
+#include "rounding/stretches.h"
 #include "rounding/thin_walls.h"
 
 namespace arris {
@@ -91,7 +92,7 @@ bool CreasedSolid::is_kept(const MeshPlace& at, Vec3d x, Vec3d normal, std::uint
 }
 
 bool CreasedSolid::stays(Vec3d x, Vec3d normal, std::uint32_t region, double r) const {
-  if (surface.is_firm(region)) return true;
+  if (surface.is_firm(region) || mouths.hold(surface, x)) return true;
   return is_between_walls(surface, x - normal * r, 2 * r) &&
          gets_stuck(surface, x, normal, region, r - tolerance);
 }
@@ -116,8 +117,9 @@ std::optional<PipeHit> CreasedSolid::first_material(Vec3d x, Vec3d direction,
   const double end = met ? met->t : exit.t;
   if (!std::isfinite(end)) return std::nullopt;
   const Vec3d last = x + direction * end;
-  const Vec3d reach(radius);
-  if (field.is_uniform() && !surface.has_firm_near(min(x, last) - reach, max(x, last) + reach) &&
+  const Vec3d low = min(x, last), high = max(x, last), reach(radius);
+  if (field.is_uniform() && !surface.has_firm_near(low - reach, high + reach) &&
+      !mouths.is_near(low, high) &&
       !is_between_walls(surface, (x + last) * 0.5, 2 * radius + 0.5 * length(last - x))) {
     return std::nullopt;
   }
@@ -150,11 +152,10 @@ const CreaseShape& CreasedSolid::shape() const {
 }
 
 std::vector<std::pair<double, double>> CreasedSolid::find_sharp_parts(const FaceEdge& edge) const {
-  std::vector<std::pair<double, double>> parts;
   if (surface.is_firm(edge.region0) || surface.is_firm(edge.region1)) return {{0, 1}};
   const bool may_stay = is_between_walls(surface, (edge.p0 + edge.p1) * 0.5,
                                          2 * radius + 0.5 * length(edge.p1 - edge.p0));
-  if (field.is_uniform() && !may_stay) return parts;
+  if (field.is_uniform() && !may_stay) return {};
   const Vec3d inward = -normalize(edge.normal0 + edge.normal1);
   const auto is_sharp = [&](double u) {
     const Vec3d x = edge.p0 + (edge.p1 - edge.p0) * u;
@@ -164,22 +165,7 @@ std::vector<std::pair<double, double>> CreasedSolid::find_sharp_parts(const Face
   };
   const double extent = length(edge.p1 - edge.p0);
   const int steps = std::clamp(int(std::ceil(extent / (kEdgeStep * radius))), 2, kMostEdgeSteps);
-  // Ends are corners, of other edges, too.
-  bool was = is_sharp(0.5 / steps);
-  double from = 0;
-  for (int i = 1; i < steps; ++i) {
-    double low = (i - 0.5) / steps, high = (i + 0.5) / steps;
-    const bool now = is_sharp(high);
-    for (int k = 0; now != was && k < 30; ++k) {
-      const double middle = 0.5 * (low + high);
-      (is_sharp(middle) == was ? low : high) = middle;
-    }
-    if (was && !now) parts.emplace_back(from, low);
-    if (!was && now) from = high;
-    was = now;
-  }
-  if (was) parts.emplace_back(from, 1.0);
-  return parts;
+  return find_stretches(steps, is_sharp);
 }
 
 double CreasedSolid::beneath() const {
@@ -194,7 +180,7 @@ bool CreasedSolid::is_beneath(Vec3d x, double radii) const {
   pipes.for_each_near(x, x, [&](const CreaseCurve& part) {
     within = within || distance_to_balls(part, x) < least;
   });
-  if (within) return true;
+  if (within || mouths.hold(surface, x)) return true;
   double nearest = radius;
   Vec3d foot;
   std::uint32_t region = kNone;

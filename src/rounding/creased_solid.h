@@ -21,6 +21,7 @@
 #include "rounding/crease_shape.h"
 #include "rounding/creases.h"
 #include "rounding/near_triangles.h"
+#include "rounding/open_mouths.h"
 #include "rounding/radius_field.h"
 #include "rounding/solid_surface.h"
 
@@ -53,6 +54,7 @@ struct CreasedSolid {
   double tolerance = 0;  // crease_tolerance()
   ClearCells clear;      // of the caller's triangles of which bands tell little
   NearLists near;        // of those with bands, and few others near
+  OpenMouths mouths;     // of the space outside
 
   // Which part of the balls is surface, for outlines: made on all cores when it is first asked for.
   [[nodiscard]] const CreaseShape& shape() const;
@@ -73,7 +75,8 @@ struct CreasedSolid {
   // which the normal lies. Nothing: there are no such two. Points are relative to the centre, triangles the mesh's.
   [[nodiscard]] std::optional<EdgeBlend> blend_at(Vec3d x, Vec3d normal) const;
   [[nodiscard]] std::size_t bytes() const {
-    return surface.bytes() + pipes.bytes() + field.bytes() + clear.bytes() + near.bytes();
+    return surface.bytes() + pipes.bytes() + field.bytes() + clear.bytes() + near.bytes() +
+           mouths.bytes();
   }
 
   // Whether a place of a face that no ball of the radius r can touch stays all the same.

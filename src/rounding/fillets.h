@@ -8,12 +8,12 @@
 //            walls that are too near to each other for the ball, air stays as material does (thin_walls.h).
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <optional>
 #include <span>
 #include <vector>
 
+#include "rounding/contacts.h"
 #include "rounding/creased_solid.h"
 #include "rounding/plain_crease.h"
 
@@ -46,12 +46,6 @@ class Fillets {
   [[nodiscard]] std::size_t bytes() const { return parts_.size() * sizeof(Part); }
 
  private:
-  static constexpr std::size_t kMostContacts = 12;
-  struct Contacts {
-    std::array<Vec3d, kMostContacts> toward;  // unit, from the ball's centre
-    std::size_t count = 0;
-    bool at_smooth_edge = false;  // two are on faces that meet in one
-  };
   struct Part {
     std::uint32_t pipe;  // CreasePipes'
     // Where the balls around a segment touch: the same all along it.
@@ -63,10 +57,9 @@ class Fillets {
     Vec3d low{}, high{};  // see box_of()
   };
 
-  [[nodiscard]] bool is_backed(const CreaseCurve& curve, const Contacts& contacts) const;
   [[nodiscard]] bool is_among_walls(const CreaseCurve& curve) const;
   void set_box(Part& part) const;
-  [[nodiscard]] Contacts contacts_at(Vec3d c) const;
+  [[nodiscard]] Contacts contacts_at(const CreaseCurve& curve, double u) const;
   [[nodiscard]] bool begins_at(const Part& part, const PipePlace& place) const;
 
   const CreasedSolid* outside_;

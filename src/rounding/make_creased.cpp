@@ -81,7 +81,11 @@ class CreasedMaker {
                        r_,
                        crease_tolerance(outer_.size(), r_),
                        std::move(clear),
-                       NearLists(lists)};
+                       NearLists(lists),
+                       {}};
+    if (in_.is_outside) {
+      solid.mouths = OpenMouths(solid.surface, solid.pipes, solid.tolerance);
+    }
     solid.surface.set_firm(faces_that_vanish(solid));
     std::vector<PlainCrease> plain = find_plain_creases(solid, in_.regions.planes);
     append_sharp_parts(solid, found.clamped);

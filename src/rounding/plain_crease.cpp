@@ -176,6 +176,7 @@ std::vector<PlainCrease> find_plain_creases(const CreasedSolid& solid,
         solid.surface.is_joined(line.face_b, line.face_a)) {
       return;
     }
+    if (solid.mouths.is_behind(std::uint32_t(i))) return;
     const Vec3d na = planes[line.face_a].normal, nb = planes[line.face_b].normal;
     const double cosine = dot(na, nb);
     if (1 + cosine < kLeastOpening || 1 - cosine * cosine < kLeastSine * kLeastSine) return;

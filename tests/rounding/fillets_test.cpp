@@ -293,10 +293,12 @@ TEST(Fillets, gaps_too_narrow_for_the_ball_stay_sharp) {
   EXPECT_LE(tally.wrong * 300, tally.rays) << fmt::format("{}", fmt::join(tally.examples, "\n"));
 }
 
-// A dovetail whose mouth is narrower than the ball that fits within: the mouth stays open.
+// A dovetail whose mouth is narrower than the ball that fits within: the mouth stays open, and its lips are as if there
+// were no fillets.
 TEST(Fillets, mouths_of_undercut_grooves_stay_open) {
   const Outline dovetail{{-5, 0},  {5, 0},    {5, 3},    {0.3, 3},
                          {1.5, 1}, {-1.5, 1}, {-0.3, 3}, {-5, 3}};
+  constexpr double kAboveFillets = 2.2;
   const CreasedCase groove{prism_over("dovetail", dovetail, {6, 1, 0}), 0.5};
   for (const RoundEdges edges : {RoundEdges::concave, RoundEdges::both}) {
     FilletShooter shooter(groove, edges, 9);
@@ -309,6 +311,28 @@ TEST(Fillets, mouths_of_undercut_grooves_stay_open) {
       ASSERT_TRUE(hit.has_value()) << i;
       EXPECT_NEAR(hit->t, 10, 1e-6) << i << " " << name_of(hit->feature);
     }
+    RoundingOptions convex;
+    convex.radius = edges == RoundEdges::both ? groove.radius : 1e-8;
+    const Rounding without = make_rounding(groove.mesh.view(), convex, "dovetail");
+    int above = 0;
+    for (int i = 0; i < 4000; ++i) {
+      const Vec3d target(uniform(rng, -1, 1), uniform(rng, kAboveFillets, 3.3),
+                         uniform(rng, -0.5, 6.5));
+      const Vec3d d = random_direction(rng);
+      const Ray ray{target - d * (i % 2 == 0 ? 20 : 0.2), d};
+      const auto is_above = [&](const auto& hit) {
+        return hit && ray.origin.y + d.y * hit->t > kAboveFillets;
+      };
+      if (shooter.inside_by(ray.origin) > -0.1) continue;
+      const auto hit = trace(ray, shooter.object(), RayStart::outside);
+      const auto expected = trace(ray, {groove.mesh.view(), &without}, RayStart::outside);
+      if (!is_above(hit) && !is_above(expected)) continue;
+      if (hit && !is_above(hit) && hit->feature == Feature::fillet) continue;
+      ASSERT_EQ(hit.has_value(), expected.has_value()) << i;
+      EXPECT_NEAR(hit->t, expected->t, 1e-6) << i << " " << name_of(hit->feature);
+      ++above;
+    }
+    EXPECT_GT(above, 500);
   }
 }
 
