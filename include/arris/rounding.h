@@ -54,7 +54,7 @@ struct RoundingOptions {
   Detection detection = Detection::face_index;
   TooLarge too_large = TooLarge::error;
   OnOverlap on_overlap = OnOverlap::report;
-  std::vector<EdgeRule> rules;  // radii in the mesh's units; closed solids' convex edges only
+  std::vector<EdgeRule> rules;  // radii in the mesh's units; of edges of closed solids only
 };
 
 // Position along a ray: origin + t * direction.

@@ -104,12 +104,13 @@ enum class RoundEdges { convex, concave, both };
 // What becomes of edges beside which the radius has no room: they stay sharp and are reported, or get a smaller one.
 enum class OnOverlap { report, clamp };
 
-// Convex edges of an object that have a radius of their own: those for which all holds that is given.
+// Edges of an object that have a radius of their own: those for which all holds that is given.
 struct EdgeRule {
   double radius = 0;     // world units; 0: they stay sharp
   bool is_part = false;  // the radius is a part of the object's
   // Least and most angle between the normals of the two faces, in radians.
   std::optional<std::array<double, 2>> turn;
+  RoundEdges kind = RoundEdges::both;  // of those that are rounded at all
   // Corners of a box in which both ends lie, in the object's space.
   std::optional<std::array<Vec3d, 2>> box;
   // One of these segments has the edge on it, in the object's space; empty: no matter.

@@ -134,6 +134,7 @@ TomlTable make_rule_table(const EdgeRule& rule) {
     const auto [least, most] = *rule.turn;
     set_toml(out, "angle", TomlArray{{{}, exact_degrees(least)}, {{}, exact_degrees(most)}});
   }
+  if (rule.kind != RoundEdges::both) set_toml(out, "kind", text(name_of(rule.kind)));
   if (rule.box) set_toml(out, "box", points(*rule.box));
   TomlArray edges;
   for (const std::array<Vec3d, 2>& segment : rule.segments) edges.push_back({{}, points(segment)});

@@ -109,6 +109,7 @@ EdgeRule parse_rule(const TomlTable& table, TomlPlace place, const std::string& 
     }
     rule.turn = {radians(angle->x), radians(angle->y)};
   }
+  rule.kind = reader.word<RoundEdges>("kind", kEdges).value_or(rule.kind);
   if (const TomlMember* box = reader.find("box")) {
     if (const auto corners = parse_points(reader, box->value, "box", problems)) {
       const auto& [a, b] = *corners;

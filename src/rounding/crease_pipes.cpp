@@ -199,7 +199,12 @@ CreasePipes::Foot CreasePipes::foot_on(const Part& part, Vec3d x) {
     const Turn turn = part.arc.nearest(x, {});
     return {part.arc.at(turn), part.arc.parameter(turn)};
   }
-  const double u = nearest_parameter(part.curve, x);
+  double u = nearest_parameter(part.curve, x);
+  if (part.growth != 0) {
+    const double along = dot(x - part.p0, part.axis);
+    const double ball = nearest_ball(along, length(x - part.p0 - part.axis * along), part.growth);
+    u = part.curve.u0 + std::clamp(ball / part.length, 0.0, 1.0) * (part.curve.u1 - part.curve.u0);
+  }
   return {part.curve.at(u), u};
 }
 

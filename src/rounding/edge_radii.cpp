@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <optional>
 
@@ -50,10 +51,12 @@ class RadiusFinder {
   [[nodiscard]] bool holds(const EdgeRule& rule, std::uint32_t h) const {
     const Vec3d p0(places_[welded_.source[welded_.origin(h)]]);
     const Vec3d p1(places_[welded_.source[welded_.target(h)]]);
+    const double turn = turn_at(welded_, regions_, h);
+    if (rule.kind == (turn < 0 ? RoundEdges::convex : RoundEdges::concave)) return false;
     if (rule.turn) {
-      const double turn = turn_at(welded_, regions_, h);
       const auto [least, most] = *rule.turn;
-      if (turn < least - kSameAngle || turn > most + kSameAngle) return false;
+      const double angle = std::abs(turn);
+      if (angle < least - kSameAngle || angle > most + kSameAngle) return false;
     }
     if (rule.box && !(is_within(*rule.box, p0) && is_within(*rule.box, p1))) return false;
     const auto lies_on = [&](const std::array<Vec3d, 2>& segment) {
@@ -95,7 +98,9 @@ std::vector<double> find_edge_radii(const MeshView& mesh, const WeldedMesh& weld
   bool any = false;
   for (std::uint32_t h = 0; h < radii.size(); ++h) {
     const std::uint32_t twin = welded.twin[h];
-    if (kinds[h] != EdgeKind::convex || twin < h) continue;
+    const bool is_rounded = kinds[h] == EdgeKind::convex ||
+                            (kinds[h] == EdgeKind::concave && options.edges != RoundEdges::convex);
+    if (!is_rounded || twin < h) continue;
     radii[h] = radii[twin] = finder.radius_of(h);
     any = any || radii[h] != options.radius;
   }

@@ -1,4 +1,4 @@
-// edge_radii.h — which convex edges have a radius of their own
+// edge_radii.h — which edges have a radius of their own
 // What       MeshView::edge_radii, and RoundingOptions::rules, which go before
 #pragma once
 
@@ -11,7 +11,7 @@
 
 namespace arris {
 
-// Per half-edge, of convex ones; empty if all have the options' radius.
+// Per half-edge, of those to be rounded; empty if all have the options' radius.
 std::vector<double> find_edge_radii(const MeshView& mesh, const WeldedMesh& welded,
                                     const FlatRegions& regions, std::span<const EdgeKind> kinds,
                                     const RoundingOptions& options);

@@ -103,19 +103,22 @@ class ExactMaker {
     std::vector<std::uint32_t> wanted;
     for (std::uint32_t s = 0; s < data_.solids.size(); ++s) {
       const Shell& shell = in_.welded.shells[s];
-      if (shell.closed && !is_cavity(shell) && concave_edges_of(s) > 0) wanted.push_back(s);
+      if (shell.closed && fillets_of(s) > 0) wanted.push_back(s);
     }
+    std::vector<double> radii(in_.radii.size());
+    for (std::uint32_t h = 0; h < radii.size(); ++h) radii[turned_edge(h)] = in_.radii[h];
     const CreasedInput input{in_.mesh,
                              in_.outside->welded,
                              in_.outside->regions,
                              in_.outside->kinds,
                              in_.options.radius,
-                             OnOverlap::report,
-                             {},
+                             in_.options.on_overlap,
+                             radii,
                              true};
     std::vector<std::optional<MadeCreased>> made(wanted.size());
     parallel_for(wanted.size(), {}, [&](std::size_t i) {
-      made[i] = make_creased_solid(input, std::span(wanted).subspan(i, 1));
+      made[i] = make_creased_solid(input, std::span(wanted).subspan(i, 1),
+                                   data_.solids[wanted[i]].center);
     });
     for (std::size_t i = 0; i < wanted.size(); ++i) {
       if (!made[i]) continue;
@@ -146,9 +149,9 @@ class ExactMaker {
     Solid& solid = data_.solids[s];
     solid.filled = std::uint32_t(data_.filled.size());
     data_.filled.push_back(std::make_unique<const FilledSolid>(std::move(outside), plain));
-    made_.filled_edges += concave_edges_of(s);
+    made_.filled_edges += fillets_of(s);
     std::set<FacePair> edges;  // those between two faces are one
-    for_edges_of(EdgeKind::concave, in_.welded, in_.kinds, s, [&](std::uint32_t h) {
+    for_fillets_of(s, [&](std::uint32_t h) {
       const std::uint32_t twin = in_.welded.twin[h];
       edges.insert(std::minmax(in_.regions.region[h / 3], in_.regions.region[twin / 3]));
     });
@@ -163,9 +166,16 @@ class ExactMaker {
     }
   }
 
-  [[nodiscard]] std::uint64_t concave_edges_of(std::uint32_t s) const {
+  // Visits concave edges that are to have one.
+  template <class Visit>
+  void for_fillets_of(std::uint32_t s, const Visit& visit) const {
+    for_edges_of(EdgeKind::concave, in_.welded, in_.kinds, s, [&](std::uint32_t h) {
+      if (in_.radii.empty() || in_.radii[h] > 0) visit(h);
+    });
+  }
+  [[nodiscard]] std::uint64_t fillets_of(std::uint32_t s) const {
     std::uint64_t count = 0;
-    for_edges_of(EdgeKind::concave, in_.welded, in_.kinds, s, [&](std::uint32_t) { ++count; });
+    for_fillets_of(s, [&](std::uint32_t) { ++count; });
     return count;
   }
 

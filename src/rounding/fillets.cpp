@@ -24,7 +24,8 @@ Fillets::Fillets(const CreasedSolid& outside, std::span<const PlainCrease> plain
     // Around a corner the balls touch nothing else: the seam of two offsets, not a crease. Smooth edges stay.
     if (toward.size() < 2 || contacts.are_at_smooth_edge(outside.surface)) continue;
     Part part{i, curve.is_line && toward.size() == 2, toward[0], toward[1]};
-    part.among_walls = is_among_walls(curve) || outside.mouths.is_behind(i);
+    part.among_walls =
+        !outside.field.is_uniform() || is_among_walls(curve) || outside.mouths.is_behind(i);
     any_among_walls_ = any_among_walls_ || part.among_walls;
     while (!plain.empty() && plain.front().part < i) plain = plain.subspan(1);
     if (!plain.empty() && plain.front().part == i) {
@@ -51,7 +52,6 @@ bool Fillets::is_among_walls(const CreaseCurve& curve) const {
 
 void Fillets::set_box(Part& part) const {
   const CreaseCurve& curve = outside_->pipes.curve_of(part.pipe);
-  const double r = outside_->radius;
   Vec3d low(INFINITY), high(-INFINITY);
   // Between contacts the surface rises above their chord.
   double half_cosine = 1;
@@ -59,11 +59,12 @@ void Fillets::set_box(Part& part) const {
     const Contacts contacts = contacts_at(curve, u);
     half_cosine = std::min(half_cosine, contacts.spread().half_cosine);
     for (const Vec3d toward : contacts.toward()) {
-      const Vec3d p = curve.at(u) + toward * r;
+      const Vec3d p = curve.at(u) + toward * curve.radius_at(u);
       low = min(low, p);
       high = max(high, p);
     }
   }
+  const double r = std::max(curve.r0, curve.r1);
   const Vec3d rise(r * (1 - half_cosine) + 2 * outside_->pipes.bulge_of(part.pipe) + kOnBall * r);
   part.low = low - rise;
   part.high = high + rise;
@@ -72,16 +73,20 @@ void Fillets::set_box(Part& part) const {
 bool Fillets::begins_at(const Part& part, const PipePlace& place) const {
   const CreaseCurve& curve = outside_->pipes.curve_of(part.pipe);
   const Vec3d c = curve.at(place.u);
-  const Vec3d x = c + place.normal * outside_->radius;
+  const double r = curve.radius_at(place.u);
+  const Vec3d x = c + place.normal * r;
   if (min(x, part.low) != part.low || max(x, part.high) != part.high) return false;
-  const bool is_end = place.u <= curve.u0 || place.u >= curve.u1;
-  if (part.has_sides && !is_end) {
-    if (!is_between(place.normal, part.side_a, part.side_b)) return false;
-  } else {
-    if (!contacts_at(curve, place.u).hold(place.normal)) return false;
+  const bool is_end = place.u <= curve.u0 || place.u >= curve.u1, grows = curve.r0 != curve.r1;
+  if (part.has_sides && (grows || !is_end)) {
+    // Normals of cones lean, and what is between two of different slopes belongs to their common ball.
+    const auto across = [&](Vec3d v) {
+      return grows ? normalize(v - curve.a * dot(v, curve.a)) : v;
+    };
+    if (!is_between(across(place.normal), across(part.side_a), across(part.side_b))) return false;
+  } else if (!contacts_at(curve, place.u).hold(place.normal)) {
+    return false;
   }
   if (place.u > part.plain0 && place.u < part.plain1) return true;
-  const double r = outside_->radius;
   if (outside_->pipes.holds(x, r * kOnBall)) return false;
   return !part.among_walls || !outside_->is_beneath(x + place.normal * (kBehind * r));
 }

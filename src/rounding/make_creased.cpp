@@ -24,11 +24,12 @@ constexpr double kNearCrease = 2;
 
 class CreasedMaker {
  public:
-  CreasedMaker(const CreasedInput& in, std::span<const std::uint32_t> shells)
+  CreasedMaker(const CreasedInput& in, std::span<const std::uint32_t> shells,
+               std::optional<Vec3d> center)
       : in_(in),
         shells_(shells),
         outer_(in.welded.shells[shells.front()]),
-        center_(outer_.center()),
+        center_(center.value_or(outer_.center())),
         r_(in.radius) {
     for (const std::uint32_t s : shells) {
       const Shell& shell = in.welded.shells[s];
@@ -65,8 +66,8 @@ class CreasedMaker {
   }
 
   [[nodiscard]] std::optional<MadeCreased> make() const {
-    // Such balls fit nowhere.
-    if (r_ > outer_.size()) return std::nullopt;
+    // Such balls fit nowhere, or no edge has a radius.
+    if (r_ > outer_.size() || r_ == 0) return std::nullopt;
     SolidSurface surface = make_surface();
     if (has_smooth_edges_ && is_too_fine(surface)) return std::nullopt;
     const std::vector<FacePair> sharp = join_smooth_faces(surface);
@@ -97,7 +98,7 @@ class CreasedMaker {
   [[nodiscard]] VariedCreases find(const SolidSurface& surface) const {
     const CreaseInput input{in_.welded, in_.regions, in_.kinds,     shells_,
                             surface,    center_,     outer_.size(), r_};
-    const bool clamp = in_.on_overlap == OnOverlap::clamp && !in_.is_outside;
+    const bool clamp = in_.on_overlap == OnOverlap::clamp;
     if (has_own_radii_) return find_varied_creases({input, in_.radii, clamp});
     FoundCreases found = find_creases(input);
     if (clamp && !found.missing.empty()) {
@@ -333,8 +334,9 @@ class CreasedMaker {
 }  // namespace
 
 std::optional<MadeCreased> make_creased_solid(const CreasedInput& input,
-                                              std::span<const std::uint32_t> shells) {
-  const CreasedMaker maker(input, shells);
+                                              std::span<const std::uint32_t> shells,
+                                              std::optional<Vec3d> center) {
+  const CreasedMaker maker(input, shells, center);
   if (!maker.is_solid()) return std::nullopt;
   return maker.make();
 }

@@ -1,5 +1,5 @@
 // make_creased.h — from shells of a mesh to a CreasedSolid, and the bands that say where its faces are kept
-// In / Out   relative to the centre of the outermost shell; bands are of the caller's triangles
+// In / Out   relative to a centre, usually that of the outermost shell; bands are of the caller's triangles
 // Cost       on all cores
 #pragma once
 
@@ -25,7 +25,7 @@ struct CreasedInput {
   std::span<const EdgeKind> kinds;  // per half-edge
   double radius;
   OnOverlap on_overlap = OnOverlap::report;
-  std::span<const double> radii{};  // per half-edge, of convex ones; empty: all have the radius
+  std::span<const double> radii{};  // per half-edge; empty: all have the radius
   bool is_outside = false;          // of the space outside (outside_mesh.h)
 };
 
@@ -39,6 +39,7 @@ struct MadeCreased {
 // shells: the outside of one solid, then its hollows. Nothing: something about them is open, no edge has room, or
 // facets of a curved surface are too fine for the radius.
 std::optional<MadeCreased> make_creased_solid(const CreasedInput& input,
-                                              std::span<const std::uint32_t> shells);
+                                              std::span<const std::uint32_t> shells,
+                                              std::optional<Vec3d> center = {});
 
 }  // namespace arris

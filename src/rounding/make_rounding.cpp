@@ -185,7 +185,7 @@ class RoundingMaker {
     solid.first_node = std::uint32_t(data_->nodes.size());
     const bool creased = solid.creased != kNone;
     if (is_cavity(welded_.shells[s]) && !creased) {
-      ++cavities_;
+      cavities_ += solid.filled == kNone ? 1 : 0;
       return;
     }
     const bool convex_solid = solid.convex && solid.closed;
@@ -272,19 +272,22 @@ class RoundingMaker {
     data_->report.clamped.push_back({p + along * part.from, p + along * part.to, part.radius});
   }
 
-  // Edges without a radius stay sharp everywhere; the others of what isn't a creased solid have the options' radius.
+  // Edges without a radius stay sharp everywhere; the others of what isn't creased or filled have the options' radius.
   void leave_edges_without_radius() {
     if (radii_.empty()) return;
     for (std::uint32_t s = 0; s < data_->solids.size(); ++s) {
-      const bool creased = data_->solids[s].creased != kNone;
+      Solid& solid = data_->solids[s];
       for_edges_of(EdgeKind::convex, welded_, kinds_, s, [&](std::uint32_t h) {
         if (radii_[h] == 0) {
           kinds_[h] = kinds_[welded_.twin[h]] = EdgeKind::smooth;
           ++sharp_by_rule_;
-          data_->solids[s].all_rounded = data_->solids[s].exact = false;
-        } else if (!creased && radii_[h] != options_.radius) {
+          solid.all_rounded = solid.exact = false;
+        } else if (solid.creased == kNone && radii_[h] != options_.radius) {
           ++rules_ignored_;
         }
+      });
+      for_edges_of(EdgeKind::concave, welded_, kinds_, s, [&](std::uint32_t h) {
+        if (radii_[h] == 0) ++concave_by_rule_;
       });
     }
   }
@@ -480,7 +483,7 @@ class RoundingMaker {
          "convex edges stay sharp: only concave edges are to be rounded");
     note(cavities_, "hollow inside another solid: its edges stay sharp",
          "hollows inside other solids: their edges stay sharp");
-    note(report.concave_edges - filled_edges_, "concave edge stays sharp",
+    note(report.concave_edges - filled_edges_ - concave_by_rule_, "concave edge stays sharp",
          "concave edges stay sharp");
     note(report.nonmanifold_edges, "non-manifold edge stays sharp",
          "non-manifold edges stay sharp");
@@ -494,7 +497,7 @@ class RoundingMaker {
          "edges stay sharp in part: the radius is too large for the faces beside them");
     note(clamped_, "edge has a smaller radius: its own is too large for what lies beside it",
          "edges have a smaller radius: their own is too large for what lies beside them");
-    note(sharp_by_rule_, "edge stays sharp: its radius is 0",
+    note(sharp_by_rule_ + concave_by_rule_, "edge stays sharp: its radius is 0",
          "edges stay sharp: their radius is 0");
     note(rules_ignored_,
          "edge has the object's radius instead of its own: it is of no closed solid that is exact",
@@ -527,7 +530,7 @@ class RoundingMaker {
   WeldedMesh welded_;
   FlatRegions regions_;
   std::vector<EdgeKind> kinds_;
-  std::vector<double> radii_;  // per half-edge, of convex ones; empty: all have the options'
+  std::vector<double> radii_;           // find_edge_radii()
   std::optional<OutsideMesh> outside_;  // if concave edges are to be rounded, and there are any
   std::vector<std::uint32_t> triangle_begin_, triangles_;
   std::vector<TriangleBand> bands_;
@@ -536,7 +539,7 @@ class RoundingMaker {
   std::vector<ShellNetwork> networks_;
   std::uint64_t cavities_ = 0, shortened_ = 0, narrow_ = 0, too_small_ = 0, unasked_ = 0;
   std::uint64_t filled_edges_ = 0, left_in_creased_ = 0, sharp_in_part_ = 0;
-  std::uint64_t clamped_ = 0, sharp_by_rule_ = 0, rules_ignored_ = 0;
+  std::uint64_t clamped_ = 0, sharp_by_rule_ = 0, concave_by_rule_ = 0, rules_ignored_ = 0;
 };
 
 }  // namespace

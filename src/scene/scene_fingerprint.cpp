@@ -108,6 +108,7 @@ class Fingerprint {
     add(rule.radius);
     add(rule.is_part);
     add(rule.turn);
+    add(rule.kind);
     add(rule.box);
     add(rule.segments);
   }

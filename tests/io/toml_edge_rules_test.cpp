@@ -36,6 +36,7 @@ radius = 0
 [[round.rules]]
 radius = "50%"
 angle = [80, 100]
+kind = "concave"
 box = [[1, 0, 0.5], [0, 2, 0]]
 edges = [[[0, 0, 0], [0, 0, 1]], [[0.5, 0, 0], [0.5, 1, 0]]]
 [[object]]
@@ -54,6 +55,7 @@ round = { rules = [] }
       {.radius = 0.5,
        .is_part = true,
        .turn = {{radians(80), radians(100)}},
+       .kind = RoundEdges::concave,
        .box = {{Vec3d(0, 0, 0), Vec3d(1, 2, 0.5)}},
        .segments = {{Vec3d(0, 0, 0), Vec3d(0, 0, 1)}, {Vec3d(0.5, 0, 0), Vec3d(0.5, 1, 0)}}}};
   EXPECT_EQ(scene.rounding->rules, rules);
@@ -79,6 +81,8 @@ TEST(TomlEdgeRules, names_what_is_wrong_with_rules_for_edges) {
   EXPECT_THAT(refusal_of_rule("radius = 1, angle = [0, 181]"), HasSubstr("use 0 to 180"));
   EXPECT_THAT(refusal_of_rule("radius = 1, angle = [90, 30]"),
               HasSubstr("round rule 2 angle: is [90, 30]; the least comes first"));
+  EXPECT_THAT(refusal_of_rule("radius = 1, kind = \"sharp\""),
+              HasSubstr("round rule 2 kind: \"sharp\" is not one of convex, concave, both"));
   EXPECT_THAT(refusal_of_rule("radius = 1, box = [0, 0, 0]"),
               HasSubstr("round rule 2 box: must be two points like"));
   EXPECT_THAT(refusal_of_rule("radius = 1, box = [[0, 0, 0], [1, 1]]"),
