@@ -130,7 +130,23 @@ bool SolidSurface::is_on_joined(Vec3d x, double tolerance, std::uint32_t face) c
 
 void SolidSurface::set_walls(ThinWalls walls) {
   blades_ = std::move(walls.blades);
+  needles_ = std::move(walls.needles);
   wall_tree_ = BoxTree(boxes_of(triangles_, walls.sides, reach_));
+}
+
+bool SolidSurface::is_needle(std::span<const std::uint32_t> faces) const {
+  const auto has = [&](std::uint32_t face, std::uint32_t corner) {
+    return std::ranges::binary_search(needles_, std::pair(face, corner));
+  };
+  const auto face = [](const auto& needle) { return needle.first; };
+  for (auto n = std::ranges::lower_bound(needles_, faces.front(), {}, face);
+       n != needles_.end() && n->first == faces.front(); ++n) {
+    if (std::all_of(faces.begin(), faces.end(),
+                    [&](std::uint32_t f) { return has(f, n->second); })) {
+      return true;
+    }
+  }
+  return false;
 }
 
 SolidSurface::Exit SolidSurface::first_exit(Vec3d origin, Vec3d direction, double after,
@@ -166,8 +182,8 @@ bool SolidSurface::is_entered(Vec3d origin, Vec3d direction, double after, doubl
 
 std::size_t SolidSurface::bytes() const {
   return triangles_.size() * sizeof(SurfaceTriangle) +
-         (joined_.size() + blades_.size()) * sizeof(FacePair) + wall_tree_.bytes() +
-         firm_.size() * sizeof(std::uint32_t) + tree_.bytes();
+         (joined_.size() + blades_.size() + needles_.size()) * sizeof(FacePair) +
+         wall_tree_.bytes() + firm_.size() * sizeof(std::uint32_t) + tree_.bytes();
 }
 
 }  // namespace arris

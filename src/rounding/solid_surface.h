@@ -45,6 +45,8 @@ struct ThinWalls {
   std::vector<std::uint32_t> sides;  // triangles, by their place in the surface; sorted
   // Faces that meet in an edge as sharp as that: balls may roll out of there. Each pair in both orders; sorted.
   std::vector<FacePair> blades;
+  // Of corners as sharp as that, all of whose faces are sides: these, and a number for each corner; sorted.
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> needles;
 };
 
 class SolidSurface {
@@ -65,6 +67,8 @@ class SolidSurface {
   [[nodiscard]] bool is_blade(std::uint32_t face, std::uint32_t other) const {
     return std::ranges::binary_search(blades_, FacePair(face, other));
   }
+  // Whether the faces meet in one corner as sharp as a blade.
+  [[nodiscard]] bool is_needle(std::span<const std::uint32_t> faces) const;
   [[nodiscard]] bool is_firm(std::uint32_t region) const {
     return std::ranges::binary_search(firm_, region);
   }
@@ -120,7 +124,7 @@ class SolidSurface {
   [[nodiscard]] bool is_on_joined(Vec3d x, double tolerance, std::uint32_t face) const;
 
   std::vector<SurfaceTriangle> triangles_;
-  std::vector<FacePair> joined_, blades_;  // sorted
+  std::vector<FacePair> joined_, blades_, needles_;  // sorted
   std::vector<std::uint32_t> firm_;
   BoxTree tree_, wall_tree_{{}};
   double reach_;

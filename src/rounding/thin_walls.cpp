@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <span>
+#include <tuple>
+#include <utility>
 #include <vector>
 
 #include "base/parallel_collect.h"
@@ -16,6 +19,11 @@ constexpr double kTouches = 1.0 / 128, kTouchesFinely = 1e-5, kFar = 2;
 // Cosine of how much faces, or directions to them, turn at least that are opposite: by 143 degrees. A ball between them
 // grows by less than a third of its centre's way.
 constexpr double kOpposite = -0.8;
+// The same of several faces all around: of the hull of their normals, the distance from the origin is as much.
+const double kAround = std::sqrt(0.5 * (1 + kOpposite));
+// Cosine below which two of these are apart at least: of up to four unit vectors, weighted, so that their sum is 1, the
+// squared length is at least 1/4 + 3/4 of the least cosine.
+constexpr double kLeastAround = -0.2;
 // By the way of its centre: slower than this it grows nowhere; the same between the sides of a blade.
 constexpr double kStuck = 0.05, kStuckInBlade = 1e-4;
 // First radii are halved so often where there is no room.
@@ -81,6 +89,15 @@ Vec3d nearest_of_hull(const std::vector<Vec3d>& directions) {
     if (is_beyond(a) || is_beyond(b) || is_beyond(c) || is_beyond(d)) return {};  // it is within
   }
   return nearest;
+}
+
+// Whether a ball that touches faces of these normals grows by less than a third of its centre's way.
+bool are_around(const std::vector<Vec3d>& normals) {
+  double least = 1;
+  for (const Vec3d a : normals) {
+    for (const Vec3d b : normals) least = std::min(least, dot(a, b));
+  }
+  return least < kOpposite || (least < kLeastAround && length(nearest_of_hull(normals)) < kAround);
 }
 
 class GrowingBall {
@@ -161,7 +178,7 @@ class GrowingBall {
     return way;
   }
 
-  // A ball in a blade goes on however slowly.
+  // A ball in a blade, or in a needle, goes on however slowly.
   [[nodiscard]] bool is_stuck() const {
     const double speed = length(middle_);
     bool in_blade = false;
@@ -172,6 +189,12 @@ class GrowingBall {
         in_blade = true;
       }
     }
+    if (!in_blade && directions_.size() > 2 && speed < kAround) {
+      faces_.clear();
+      for (const Contact& c : contacts_) faces_.push_back(c.triangle->region);
+      in_blade = surface_.is_needle(faces_);
+      if (!in_blade) return true;
+    }
     return speed < (in_blade ? kStuckInBlade : kStuck);
   }
 
@@ -180,8 +203,42 @@ class GrowingBall {
   Vec3d middle_;  // of the directions to what it touches
   double full_, radius_ = 0, far_ = 0, touching_ = 0;
   std::vector<Contact> near_, contacts_;
-  std::vector<Vec3d> directions_;  // of contacts, without those on planes of others
+  std::vector<Vec3d> directions_;             // of contacts, without those on planes of others
+  mutable std::vector<std::uint32_t> faces_;  // of contacts
 };
+
+// Corners of sides; all triangles of one have it at the same place.
+std::vector<std::pair<std::uint32_t, std::uint32_t>> find_needles(
+    const ThinWallInput& input, std::span<const std::uint32_t> sides) {
+  struct Corner {
+    Vec3d place;
+    std::uint32_t face;
+
+    [[nodiscard]] auto key() const { return std::tie(place.x, place.y, place.z); }
+  };
+  std::vector<Corner> corners;
+  for (const std::uint32_t i : sides) {
+    const SurfaceTriangle& t = input.surface.triangles()[i];
+    for (const Vec3d p : {t.p0, t.p1, t.p2}) corners.push_back({p, t.region});
+  }
+  std::ranges::sort(corners, {}, [](const Corner& c) { return std::tuple(c.key(), c.face); });
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> needles;
+  std::uint32_t count = 0;
+  for (std::size_t i = 0, end = 0; i < corners.size(); i = end) {
+    std::vector<std::uint32_t> faces;
+    std::vector<Vec3d> normals;
+    for (; end < corners.size() && corners[end].key() == corners[i].key(); ++end) {
+      if (!faces.empty() && faces.back() == corners[end].face) continue;
+      faces.push_back(corners[end].face);
+      normals.push_back(input.regions.planes[faces.back()].normal);
+    }
+    if (faces.size() < 3 || !are_around(normals)) continue;
+    for (const std::uint32_t face : faces) needles.emplace_back(face, count);
+    ++count;
+  }
+  std::ranges::sort(needles);
+  return needles;
+}
 
 }  // namespace
 
@@ -191,20 +248,24 @@ ThinWalls find_thin_walls(const ThinWallInput& input) {
   const auto find = [&](std::size_t i, std::vector<std::uint32_t>& sides) {
     const std::uint32_t face = triangles[i].region;
     const Vec3d normal = normal_of(face);
+    std::vector<Vec3d> around{normal};
     input.surface.for_each_cut(std::uint32_t(i), normal, input.radius,
                                [&](const SurfaceTriangle& t) {
-                                 if (dot(normal, normal_of(t.region)) > kOpposite) return;
+                                 around.push_back(normal_of(t.region));
+                                 if (dot(normal, around.back()) > kOpposite) return;
                                  sides.push_back(std::uint32_t(i));
                                  sides.push_back(std::uint32_t(&t - triangles.data()));
                                });
+    if (length(nearest_of_hull(around)) < kAround) sides.push_back(std::uint32_t(i));
   };
-  ThinWalls walls{parallel_collect<std::uint32_t>(triangles.size(), kSidesAtOnce, find), {}};
+  ThinWalls walls{parallel_collect<std::uint32_t>(triangles.size(), kSidesAtOnce, find), {}, {}};
   std::ranges::sort(walls.sides);
   walls.sides.erase(std::unique(walls.sides.begin(), walls.sides.end()), walls.sides.end());
   for (const FacePair& pair : input.sharp) {
     if (dot(normal_of(pair.first), normal_of(pair.second)) < kOpposite)
       walls.blades.push_back(pair);
   }
+  walls.needles = find_needles(input, walls.sides);
   return walls;
 }
 
@@ -215,9 +276,7 @@ bool is_between_walls(const SolidSurface& surface, Vec3d center, double radius) 
     if (is_plainly_beyond(center, t, radius)) return;
     if (length(nearest_on_triangle(center, t) - center) < radius) normals.push_back(normal_of(t));
   });
-  return std::ranges::any_of(normals, [&](Vec3d a) {
-    return std::ranges::any_of(normals, [&](Vec3d b) { return dot(a, b) < kOpposite; });
-  });
+  return are_around(normals);
 }
 
 bool gets_stuck(const SolidSurface& surface, Vec3d x, Vec3d normal, std::uint32_t face,

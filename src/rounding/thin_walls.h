@@ -1,8 +1,8 @@
-// thin_walls.h — walls with less than two radii of material between their sides: they stay
+// thin_walls.h — walls and rods with less than two radii of material between their sides: they stay
 // What       A ball that touches the surface in several places grows fastest away from the middle of these: that is how
 //            the distance to the surface rises. Where it comes to the radius, the place is beside an edge or corner and
-//            rounding takes it away. Where it gets stuck, or touches opposite faces, it is between the sides of a thin
-//            wall, or at the rim of one.
+//            rounding takes it away. Where it gets stuck, or touches opposite faces, or some all around it that keep it
+//            from growing as much, it is between the sides of a thin wall or rod, or at the rim of one.
 //            Of the space outside, from which fillets are made, the same is true of air: gaps stay.
 // In / Out   coordinates relative to the solid's centre
 // Source     A. Lieutier, "Any open bounded subset of R^n has the same homotopy type as its medial axis" (2004): the
@@ -27,10 +27,11 @@ struct ThinWallInput {
   double radius;
 };
 
-// Some more triangles than get balls stuck: sides are about opposite to each other, those of blades among them.
+// Some more triangles than get balls stuck: sides are about opposite to each other, or some of them all around, those of
+// blades and needles among them.
 ThinWalls find_thin_walls(const ThinWallInput& input);
 
-// Whether both sides of a wall reach into a ball. Balls that get stuck elsewhere, as in a rod of three sides, are of no
+// Whether both sides of a wall, or those all around a rod, reach into a ball. Balls that get stuck elsewhere are of no
 // account: faces of which nothing is left stay in another way (SolidSurface::is_firm).
 bool is_between_walls(const SolidSurface& surface, Vec3d center, double radius);
 // From a place of a face, with the face's normal.

@@ -228,5 +228,84 @@ TEST(ThinWalls, edges_are_listed_as_far_as_they_stay) {
   EXPECT_EQ(listed, 4);
 }
 
+// A three-sided post on a slab, by the radii of the circles in it at its foot and its top; 0: it ends in a tip.
+TriangleSoup slab_with_post(double foot, double top, double height) {
+  TriangleSoup mesh{"post", {}, {}};
+  const auto add_triangle = [&](double inscribed, double z) {
+    for (int i = 0; i < 3; ++i) {
+      const double angle = 2 * kPi * i / 3 + 0.3;
+      mesh.positions.push_back({float(2 * inscribed * std::cos(angle)),
+                                float(2 * inscribed * std::sin(angle)), float(z)});
+    }
+  };
+  add_triangle(2, -1);
+  add_triangle(2, 0);
+  add_triangle(foot, 0);
+  const auto add_belt = [&](std::uint32_t low, std::uint32_t high) {
+    for (std::uint32_t i = 0; i < 3; ++i) {
+      const std::uint32_t j = (i + 1) % 3;
+      mesh.triangles.push_back({low + i, low + j, high + j});
+      mesh.triangles.push_back({low + i, high + j, high + i});
+    }
+  };
+  mesh.triangles.push_back({0, 2, 1});
+  add_belt(0, 3);
+  add_belt(3, 6);
+  if (top > 0) {
+    add_triangle(top, height);
+    add_belt(6, 9);
+    mesh.triangles.push_back({9, 10, 11});
+  } else {
+    mesh.positions.push_back({0, 0, float(height)});
+    for (std::uint32_t i = 0; i < 3; ++i) mesh.triangles.push_back({6 + i, 6 + (i + 1) % 3, 9});
+  }
+  return mesh;
+}
+
+// No two sides of a three-sided rod are opposite to each other.
+TEST(ThinWalls, rods_stay) {
+  constexpr double kRadius = 0.3;
+  for (const double top : {0.2, 0.1}) {
+    const TriangleSoup mesh = slab_with_post(0.25, top, 3);
+    const Rounding rounding = round(mesh, kRadius);
+    ASSERT_EQ(rounding.data().creased.size(), 1U);
+    EXPECT_EQ(rounding.report().clamped.size(), 6U);
+    Random rng(3);
+    int met = 0;
+    for (int i = 0; i < 2000; ++i) {
+      const Vec3d target(uniform(rng, -0.4, 0.4), uniform(rng, -0.4, 0.4), uniform(rng, 0, 3.2));
+      Vec3d d = random_direction(rng);
+      if (d.z > 0) d.z = -d.z;  // not through the slab
+      const Ray ray{target - d * 10.0, d};
+      const std::vector<MeshHit> sharp = intersect_mesh(ray, mesh.view());
+      if (sharp.empty() || ray.origin.z + d.z * sharp.front().t < 1e-6) continue;
+      const auto hit = trace(ray, {mesh.view(), &rounding});
+      ASSERT_TRUE(hit) << i;
+      EXPECT_NEAR(hit->t, sharp.front().t, 1e-6) << i;
+      ++met;
+    }
+    EXPECT_GT(met, 500);
+  }
+}
+
+// As a blade, a needle whose sides meet in its tip is rounded, however slim it is.
+TEST(ThinWalls, needles_are_rounded) {
+  constexpr double kRadius = 0.3, kFoot = 0.6, kHeight = 6;
+  const TriangleSoup mesh = slab_with_post(kFoot, 0, kHeight);
+  const Rounding rounding = round(mesh, kRadius);
+  ASSERT_EQ(rounding.data().creased.size(), 1U);
+  EXPECT_TRUE(rounding.report().clamped.empty());
+  // The ball that touches all sides; its top is the tip.
+  const double lean = std::atan(kFoot / kHeight);
+  const double center = kHeight - kRadius / std::sin(lean);
+  const auto down = trace({{0, 0, 10}, {0, 0, -1}}, {mesh.view(), &rounding});
+  ASSERT_TRUE(down);
+  EXPECT_NEAR(10 - down->t, center + kRadius, 1e-5);
+  for (int i = 0; i < 100; ++i) {
+    const double z = center + kRadius + (kHeight - center - kRadius) * (i + 0.5) / 100;
+    EXPECT_FALSE(trace({{-5, 1e-3, z}, {1, 0, 0}}, {mesh.view(), &rounding})) << z;
+  }
+}
+
 }  // namespace
 }  // namespace arris::oracle
