@@ -25,54 +25,62 @@ class DepthBound {
 
   // Nothing: it is nowhere near.
   [[nodiscard]] std::optional<DepthAtCorners> find() const {
-    std::array<double, 3> distance{};
-    for (std::size_t i = 0; i < 3; ++i) distance[i] = distance_at(offset_[i]);
-    const auto farthest = std::size_t(std::ranges::max_element(distance) - distance.begin());
-    if (distance[farthest] <= r_) return DepthAtCorners{r_, r_, r_};
+    const std::array<Place, 3> corners{place(offset_[0]), place(offset_[1]), place(offset_[2])};
+    const Place& farthest = *std::ranges::max_element(corners, {}, &Place::distance);
+    if (farthest.distance <= r_) return DepthAtCorners{r_, r_, r_};
     // Distances are convex: the tangent at any place bounds them from below. One from where the distance is r cuts
     // off most; it lies on the way from the farthest corner to the nearest place.
-    const Vec3d near = nearest_place();
-    if (distance_at(near) >= r_) {
-      const DepthAtCorners bound = tangent(near);
-      if (std::max({bound.d0, bound.d1, bound.d2}) <= 0) return std::nullopt;
-      return bound;
-    }
+    const std::optional<Place> near = nearest_place();
+    if (!near) return std::nullopt;
+    if (near->distance >= r_) return tangent(*near);
     // Newton's steps from outside stay there.
-    Vec3d at = offset_[farthest];
+    Place at = farthest;
     for (int i = 0; i < 20; ++i) {
-      const Vec3d away = at - nearest_on_triangle(at, other_);
-      const double far = length(away);
-      const double speed = dot(away, near - at) / far;
-      const Vec3d next = at - (near - at) * ((far - r_) / speed);
-      if (!(far - r_ > kSame * r_ && speed < 0)) break;
-      at = next;
+      const Vec3d away = at.x - at.foot, way = near->x - at.x;
+      const double speed = dot(away, way) / at.distance;
+      if (!(at.distance - r_ > kSame * r_ && speed < 0)) break;
+      at = place(at.x - way * ((at.distance - r_) / speed));
     }
     return tangent(at);
   }
 
  private:
-  [[nodiscard]] double distance_at(Vec3d c) const {
-    return length(c - nearest_on_triangle(c, other_));
+  // With the nearest one of the other triangle.
+  struct Place {
+    Vec3d x, foot;
+    double distance;
+  };
+  [[nodiscard]] Place place(Vec3d x) const {
+    const Vec3d foot = nearest_on_triangle(x, other_);
+    return {x, foot, length(x - foot)};
   }
 
-  // By projecting back and forth between the two triangles; about the nearest one does, too.
-  [[nodiscard]] Vec3d nearest_place() const {
+  // By projecting back and forth between the two triangles; about the nearest one does, too. Nothing: all are beyond
+  // the radius.
+  [[nodiscard]] std::optional<Place> nearest_place() const {
     const SurfaceTriangle own{offset_[0], offset_[1], offset_[2], 0};
-    Vec3d c = (offset_[0] + offset_[1] + offset_[2]) / 3.0;
+    Place at = place((offset_[0] + offset_[1] + offset_[2]) / 3.0);
     for (int i = 0; i < 100; ++i) {
-      const Vec3d before = c;
-      c = nearest_on_triangle(nearest_on_triangle(c, other_), own);
-      if (length(c - before) < kNear * r_ || distance_at(c) < kInside * r_) break;
+      if (is_beyond(at)) return std::nullopt;
+      const Vec3d before = at.x;
+      at = place(nearest_on_triangle(at.foot, own));
+      if (length(at.x - before) < kNear * r_ || at.distance < kInside * r_) break;
     }
-    return c;
+    if (is_beyond(at)) return std::nullopt;
+    return at;
   }
 
-  [[nodiscard]] DepthAtCorners tangent(Vec3d at) const {
-    const Vec3d foot = nearest_on_triangle(at, other_);
-    const double distance = length(at - foot);
-    if (!(distance > 0)) return {r_, r_, r_};
-    const Vec3d gradient = (at - foot) / distance;
-    const auto depth = [&](Vec3d c) { return r_ - distance - dot(gradient, c - at); };
+  // Whether the tangent at a place shows that all places are r or more from the other triangle.
+  [[nodiscard]] bool is_beyond(const Place& at) const {
+    if (at.distance < r_) return false;
+    const DepthAtCorners bound = tangent(at);
+    return std::max({bound.d0, bound.d1, bound.d2}) <= 0;
+  }
+
+  [[nodiscard]] DepthAtCorners tangent(const Place& at) const {
+    if (!(at.distance > 0)) return {r_, r_, r_};
+    const Vec3d gradient = (at.x - at.foot) / at.distance;
+    const auto depth = [&](Vec3d c) { return r_ - at.distance - dot(gradient, c - at.x); };
     return {depth(offset_[0]), depth(offset_[1]), depth(offset_[2])};
   }
 
