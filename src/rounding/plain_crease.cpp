@@ -69,7 +69,7 @@ class StretchFinder {
     solid_.surface.for_each_near(low, high, [&](const SurfaceTriangle& t) {
       if (t.region != line_.face_a && t.region != line_.face_b && is_long()) cut_at(t);
     });
-    solid_.pipes.for_each_near(low, high, [&](const CreaseCurve& c) { cut_at(c, c.u0, c.u1); });
+    solid_.pipes.for_each_near(low, high, [&](const CreaseCurve& c) { cut_at(c); });
     return stretch_;
   }
   [[nodiscard]] bool is_long() const { return stretch_.s1 - stretch_.s0 > kShortest * r_; }
@@ -91,29 +91,49 @@ class StretchFinder {
 
   // What a triangle has in the hull of the prism.
   void cut_at(const SurfaceTriangle& t) {
-    ClippedTriangle part({spot_of(t.p0), spot_of(t.p1), spot_of(t.p2)});
-    part.clip([&](Vec3d p) { return p.x - r_ - slack_; });
-    part.clip([&](Vec3d p) { return p.y - r_ - slack_; });
-    part.clip([&](Vec3d p) { return r_ * (1 + cosine_) - slack_ - p.x - p.y; });
+    const std::array<Vec3d, 3> corners{spot_of(t.p0), spot_of(t.p1), spot_of(t.p2)};
+    const auto above_a = [&](Vec3d p) { return p.x - r_ - slack_; };
+    const auto above_b = [&](Vec3d p) { return p.y - r_ - slack_; };
+    const auto below = [&](Vec3d p) { return r_ * (1 + cosine_) - slack_ - p.x - p.y; };
+    const auto is_beyond = [&](const auto& height) {
+      return height(corners[0]) > 0 && height(corners[1]) > 0 && height(corners[2]) > 0;
+    };
+    if (is_beyond(above_a) || is_beyond(above_b) || is_beyond(below)) return;
+    ClippedTriangle part(corners);
+    part.clip(above_a);
+    part.clip(above_b);
+    part.clip(below);
     if (part.corners().empty()) return;
     const auto [low, high] = std::ranges::minmax(part.corners(), {}, &Vec3d::z);
     stretch_.cut(low.z - slack_, high.z + slack_);
   }
 
-  // Where balls around a crease reach into the void. Those around places that lie under both offset faces don't: the
-  // points of the section are at least as near to the axis as to these.
-  void cut_at(const CreaseCurve& c, double u0, double u1) {
+  // A place of a crease.
+  struct Place {
+    double u;
+    Vec3d p;  // (a, b, s)
+  };
+  [[nodiscard]] Place place_on(const CreaseCurve& c, double u) const {
+    return {u, spot_of(c.at(u))};
+  }
+
+  void cut_at(const CreaseCurve& c) {
     if (!is_long()) return;
-    const double half = 0.5 * (u1 - u0);
-    const Vec3d p0 = spot_of(c.at(u0)), p1 = spot_of(c.at(u1)), p = spot_of(c.at(u0 + half));
-    const auto rise = [&](Vec3d normal) {
-      return c.is_line ? 0 : (1 - std::cos(half)) * std::hypot(dot(normal, c.a), dot(normal, c.b));
-    };
-    if (std::max(p0.x, p1.x) + rise(na_) <= slack_ && std::max(p0.y, p1.y) + rise(nb_) <= slack_) {
-      return;
-    }
-    const double extent =
-        half * (c.is_line ? 1 : std::sqrt(length_squared(c.a) + length_squared(c.b)));
+    const double speed = c.is_line ? 1 : std::sqrt(length_squared(c.a) + length_squared(c.b));
+    const double half = 0.5 * (c.u1 - c.u0), reach = r_ + half * speed;
+    const Place middle = place_on(c, c.u0 + half);
+    if (middle.p.z + reach <= stretch_.s0 || middle.p.z - reach >= stretch_.s1) return;
+    cut_at(c, speed, place_on(c, c.u0), place_on(c, c.u1));
+  }
+
+  // Where balls around a crease, of the given speed at most, reach into the void.
+  void cut_at(const CreaseCurve& c, double speed, const Place& from, const Place& to) {
+    if (!is_long()) return;
+    const double half = 0.5 * (to.u - from.u);
+    if (is_under_faces(c, half, max(from.p, to.p))) return;
+    const Place middle = place_on(c, from.u + half);
+    const Vec3d p = middle.p;
+    const double extent = half * speed;
     const double d = std::max(section_.distance_from(p) - extent - slack_, 0.0);
     if (d >= r_) return;
     const double reach = std::sqrt(r_ * r_ - d * d) + extent;
@@ -122,8 +142,22 @@ class StretchFinder {
       stretch_.cut(p.z - reach, p.z + reach);
       return;
     }
-    cut_at(c, u0, u0 + half);
-    cut_at(c, u0 + half, u1);
+    // What is nearer to the stretch's middle may spare the other half.
+    const double middle_s = 0.5 * (stretch_.s0 + stretch_.s1);
+    const bool is_from_nearer = std::abs(from.p.z - middle_s) <= std::abs(to.p.z - middle_s);
+    if (is_from_nearer) cut_at(c, speed, from, middle);
+    cut_at(c, speed, middle, to);
+    if (!is_from_nearer) cut_at(c, speed, from, middle);
+  }
+
+  // Balls around places that lie under both offset faces don't: the points of the section are at least as near to the
+  // axis as to these. highest: of the ends of a piece.
+  [[nodiscard]] bool is_under_faces(const CreaseCurve& c, double half, Vec3d highest) const {
+    if (highest.x > slack_ || highest.y > slack_) return false;
+    if (c.is_line) return true;
+    const double rise = 1 - std::cos(half);
+    return highest.x + rise * std::hypot(dot(na_, c.a), dot(na_, c.b)) <= slack_ &&
+           highest.y + rise * std::hypot(dot(nb_, c.a), dot(nb_, c.b)) <= slack_;
   }
 
   const CreasedSolid& solid_;
