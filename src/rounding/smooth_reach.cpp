@@ -46,7 +46,6 @@ class ReachFinder {
         const std::uint32_t next = pair.second;
         if (std::ranges::count(reached, next) > 0) continue;
         if (!std::ranges::binary_search(near, next)) continue;
-        if (dot(normal_of(face), normal_of(next)) < kMostTurn) continue;
         if (std::ranges::binary_search(in_.sharp, FacePair(face, next))) continue;
         reached.push_back(next);
       }
@@ -61,12 +60,15 @@ class ReachFinder {
     return in_.regions.planes[face].normal;
   }
 
-  // Faces into which balls may cut that touch this one.
+  // Faces into which balls may cut that touch this one, and that don't turn away.
   [[nodiscard]] std::vector<std::uint32_t> faces_near(std::uint32_t face) const {
     const Vec3d normal = normal_of(face);
     std::vector<std::uint32_t> near;
+    const auto may_be_new = [&](std::uint32_t other) {
+      return (near.empty() || near.back() != other) && !(dot(normal, normal_of(other)) < kMostTurn);
+    };
     for (const FacePair& pair : pairs_of(by_region_, face)) {
-      in_.surface.for_each_cut(pair.second, normal, in_.radius,
+      in_.surface.for_each_cut(pair.second, normal, in_.radius, may_be_new,
                                [&](const SurfaceTriangle& t) { near.push_back(t.region); });
     }
     std::ranges::sort(near);

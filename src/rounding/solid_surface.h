@@ -109,10 +109,11 @@ class SolidSurface {
   void for_each_wall_near(Vec3d low, Vec3d high, Visit&& visit) const {
     wall_tree_.for_each_near(low, high, [&](std::uint32_t i) { visit(triangles_[i]); });
   }
-  // Visits those of other regions into which a ball may cut that touches a triangle, of the given normal; some more
-  // than once.
-  template <class Visit>
-  void for_each_cut(std::uint32_t triangle, Vec3d normal, double radius, Visit&& visit) const;
+  // Visits those of other regions, if they are asked for, into which a ball may cut that touches a triangle, of the
+  // given normal; some more than once.
+  template <class IsAsked, class Visit>
+  void for_each_cut(std::uint32_t triangle, Vec3d normal, double radius, IsAsked&& is_asked,
+                    Visit&& visit) const;
   [[nodiscard]] const std::vector<SurfaceTriangle>& triangles() const { return triangles_; }
   [[nodiscard]] std::size_t bytes() const;
 
@@ -130,16 +131,17 @@ class SolidSurface {
   double reach_;
 };
 
-template <class Visit>
+template <class IsAsked, class Visit>
 void SolidSurface::for_each_cut(std::uint32_t triangle, Vec3d normal, double radius,
-                                Visit&& visit) const {
+                                IsAsked&& is_asked, Visit&& visit) const {
   const SurfaceTriangle& own = triangles_[triangle];
   const Vec3d down = normal * radius, reach(radius);
   const std::array<Vec3d, 3> centers{own.p0 - down, own.p1 - down, own.p2 - down};
   const Vec3d low = min(centers[0], min(centers[1], centers[2])) - reach;
   const Vec3d high = max(centers[0], max(centers[1], centers[2])) + reach;
   for_each_near(low, high, [&](const SurfaceTriangle& t) {
-    if (t.region != own.region && may_be_cut(centers, normal, t, radius)) visit(t);
+    if (t.region == own.region || !is_asked(t.region)) return;
+    if (may_be_cut(centers, normal, t, radius)) visit(t);
   });
 }
 

@@ -249,10 +249,12 @@ ThinWalls find_thin_walls(const ThinWallInput& input) {
     const std::uint32_t face = triangles[i].region;
     const Vec3d normal = normal_of(face);
     std::vector<Vec3d> around{normal};
-    input.surface.for_each_cut(std::uint32_t(i), normal, input.radius,
+    const auto is_opposite = [&](std::uint32_t other) {
+      around.push_back(normal_of(other));
+      return !(dot(normal, around.back()) > kOpposite);
+    };
+    input.surface.for_each_cut(std::uint32_t(i), normal, input.radius, is_opposite,
                                [&](const SurfaceTriangle& t) {
-                                 around.push_back(normal_of(t.region));
-                                 if (dot(normal, around.back()) > kOpposite) return;
                                  sides.push_back(std::uint32_t(i));
                                  sides.push_back(std::uint32_t(&t - triangles.data()));
                                });
