@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <iterator>
 #include <vector>
 
 #include "base/parallel_for.h"
@@ -26,7 +27,9 @@ std::vector<T> parallel_collect(std::size_t count, std::size_t chunk, const Body
   std::size_t total = 0;
   for (const auto& list : lists) total += list.size();
   all.reserve(total);
-  for (const auto& list : lists) all.insert(all.end(), list.begin(), list.end());
+  for (auto& list : lists) {
+    all.insert(all.end(), std::move_iterator(list.begin()), std::move_iterator(list.end()));
+  }
   return all;
 }
 
