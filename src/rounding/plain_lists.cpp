@@ -5,6 +5,7 @@
 #include <limits>
 #include <utility>
 
+#include "base/parallel_collect.h"
 #include "rounding/clipped_triangle.h"
 
 namespace arris {
@@ -12,6 +13,7 @@ namespace {
 
 // Relative to the radius: a triangle this near to what a void takes away of a face may be hit there.
 constexpr double kSlack = 1e-6;
+constexpr std::size_t kCreasesAtOnce = 64;
 
 // A linear function of barycentrics (u, v), given as (x, y).
 struct Linear {
@@ -82,13 +84,13 @@ PlainLists::PlainLists(const MeshView& mesh, std::span<const TriangleBand> cover
 
 void PlainLists::add(const CreasedSolid& solid, Vec3d center, std::span<const PlainCrease> creases,
                      bool is_fillet) {
-  for (PlainCrease crease : creases) {
-    crease.is_fillet = is_fillet;
-    add_crease(solid, center, crease);
-  }
+  for (const PlainCrease& crease : creases) asked_.push_back({&solid, center, &crease, is_fillet});
 }
 
-void PlainLists::add_crease(const CreasedSolid& solid, Vec3d center, PlainCrease crease) {
+void PlainLists::list(const Asked& asked, std::vector<Listed>& listed) const {
+  const CreasedSolid& solid = *asked.solid;
+  PlainCrease crease = *asked.crease;
+  crease.is_fillet = asked.is_fillet;
   const bool may_be_covered = !crease.is_fillet && !cover_begin_.empty();
   Stretch stretch{0, crease.length};
   std::vector<std::uint32_t> triangles;
@@ -99,7 +101,7 @@ void PlainLists::add_crease(const CreasedSolid& solid, Vec3d center, PlainCrease
     // Pieces of split triangles are none of the caller's.
     const bool is_callers = t.index < mesh_.triangles.size();
     for (std::size_t k = 0; k < 3 && is_callers; ++k) {
-      corners[k] = Vec3d(mesh_.positions[mesh_.triangles[t.index][k]]) - center;
+      corners[k] = Vec3d(mesh_.positions[mesh_.triangles[t.index][k]]) - asked.center;
     }
     const TriangleStrip strip(crease, solid.radius, t.region, corners);
     if (strip.is_empty()) return;
@@ -118,19 +120,25 @@ void PlainLists::add_crease(const CreasedSolid& solid, Vec3d center, PlainCrease
   crease.length = stretch.s1 - stretch.s0;
   std::sort(triangles.begin(), triangles.end());
   triangles.erase(std::unique(triangles.begin(), triangles.end()), triangles.end());
-  for (const std::uint32_t t : triangles) places_.push_back({t, std::uint32_t(creases_.size())});
-  creases_.push_back(crease);
+  listed.push_back({crease, std::move(triangles)});
 }
 
 void PlainLists::put_into(Rounding::Data& data) const {
+  const std::vector<Listed> all = parallel_collect<Listed>(
+      asked_.size(), kCreasesAtOnce,
+      [&](std::size_t i, std::vector<Listed>& listed) { list(asked_[i], listed); });
   std::vector<std::uint32_t>& begin = data.plain_begin;
   begin.assign(mesh_.triangles.size() + 2, 0);
-  for (const Place& p : places_) ++begin[p.triangle + 2];
+  for (const Listed& listed : all) {
+    data.plain.push_back(listed.crease);
+    for (const std::uint32_t t : listed.triangles) ++begin[t + 2];
+  }
   for (std::size_t t = 2; t < begin.size(); ++t) begin[t] += begin[t - 1];
-  data.plain_on.resize(places_.size());
-  for (const Place& p : places_) data.plain_on[begin[p.triangle + 1]++] = p.crease;
+  data.plain_on.resize(begin.back());
+  for (std::uint32_t i = 0; i < all.size(); ++i) {
+    for (const std::uint32_t t : all[i].triangles) data.plain_on[begin[t + 1]++] = i;
+  }
   begin.pop_back();
-  data.plain = creases_;
 }
 
 }  // namespace arris
