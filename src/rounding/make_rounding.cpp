@@ -49,15 +49,8 @@ class RoundingMaker {
     for (std::uint32_t s = 0; s < data_->solids.size(); ++s) judge_shape(s);
     make_exact();
     leave_edges_without_radius();
-    // A mesh of bevels has each edge of its own.
-    const ShortEdges short_edges = keep_networks_ ? ShortEdges::leave_sharp : ShortEdges::skip;
-    std::map<double, NetworkBuilder> builders;
-    for (std::uint32_t s = 0; s < data_->solids.size(); ++s) {
-      const double radius = data_->solids[s].radius;
-      const auto at =
-          builders.try_emplace(radius, welded_, regions_, kinds_, radius, short_edges).first;
-      round_solid(at->second, s);
-    }
+    std::vector<ShellNetwork> networks = build_networks();
+    for (std::uint32_t s = 0; s < data_->solids.size(); ++s) round_solid(s, std::move(networks[s]));
     sort_bands();
     fill_links();
     if (options_.detection == Detection::kd_tree) make_tree();
@@ -179,17 +172,41 @@ class RoundingMaker {
     solid.exact = convex && solid.closed && all_rounded;
   }
 
-  void round_solid(NetworkBuilder& builder, std::uint32_t s) {
+  // Of each shell, empty ones of hollows that stay sharp. Builders have room for the whole mesh: a few do for all shells.
+  [[nodiscard]] std::vector<ShellNetwork> build_networks() {
+    constexpr std::size_t kMostParts = 16;
+    // A mesh of bevels has each edge of its own.
+    const ShortEdges short_edges = keep_networks_ ? ShortEdges::leave_sharp : ShortEdges::skip;
+    const std::size_t count = data_->solids.size(), parts = std::min(count, kMostParts);
+    std::vector<ShellNetwork> networks(count);
+    parallel_for(parts, {}, [&](std::size_t part) {
+      std::map<double, NetworkBuilder> builders;
+      for (std::size_t s = count * part / parts; s < count * (part + 1) / parts; ++s) {
+        const Solid& solid = data_->solids[s];
+        if (stays_sharp(s)) continue;
+        const auto at = builders.try_emplace(solid.radius, welded_, regions_, kinds_, solid.radius,
+                                             short_edges);
+        networks[s] = at.first->second.build(std::uint32_t(s), solid.convex && solid.closed);
+      }
+    });
+    return networks;
+  }
+
+  // A hollow whose solid isn't creased.
+  [[nodiscard]] bool stays_sharp(std::size_t s) const {
+    return is_cavity(welded_.shells[s]) && data_->solids[s].creased == kNone;
+  }
+
+  void round_solid(std::uint32_t s, ShellNetwork network) {
     Solid& solid = data_->solids[s];
     solid.first_arc = std::uint32_t(data_->arcs.size());
     solid.first_node = std::uint32_t(data_->nodes.size());
     const bool creased = solid.creased != kNone;
-    if (is_cavity(welded_.shells[s]) && !creased) {
+    if (stays_sharp(s)) {
       cavities_ += solid.filled == kNone ? 1 : 0;
       return;
     }
     const bool convex_solid = solid.convex && solid.closed;
-    ShellNetwork network = builder.build(s, convex_solid);
     if (convex_solid && network.inverted) {
       const InscribedBall ball = inscribed_ball(s);
       if (ball.radius - options_.radius < 1e-6 * solid.size) {
