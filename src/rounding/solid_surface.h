@@ -22,7 +22,29 @@ struct SurfaceTriangle {
   std::uint32_t index = 0;  // of the mesh
 };
 
-Vec3d nearest_on_triangle(Vec3d x, const SurfaceTriangle& t);
+// C. Ericson, "Real-Time Collision Detection" (2005), §5.1.5.
+inline Vec3d nearest_on_triangle(Vec3d x, const SurfaceTriangle& t) {
+  const Vec3d ab = t.p1 - t.p0, ac = t.p2 - t.p0, ax = x - t.p0;
+  const double d1 = dot(ab, ax), d2 = dot(ac, ax);
+  if (d1 <= 0 && d2 <= 0) return t.p0;
+  const Vec3d bx = x - t.p1;
+  const double d3 = dot(ab, bx), d4 = dot(ac, bx);
+  if (d3 >= 0 && d4 <= d3) return t.p1;
+  const double vc = d1 * d4 - d3 * d2;
+  if (vc <= 0 && d1 >= 0 && d3 <= 0) return t.p0 + ab * (d1 / (d1 - d3));
+  const Vec3d cx = x - t.p2;
+  const double d5 = dot(ab, cx), d6 = dot(ac, cx);
+  if (d6 >= 0 && d5 <= d6) return t.p2;
+  const double vb = d5 * d2 - d1 * d6;
+  if (vb <= 0 && d2 >= 0 && d6 <= 0) return t.p0 + ac * (d2 / (d2 - d6));
+  const double va = d3 * d6 - d5 * d4;
+  if (va <= 0 && d4 - d3 >= 0 && d5 - d6 >= 0) {
+    return t.p1 + (t.p2 - t.p1) * ((d4 - d3) / ((d4 - d3) + (d5 - d6)));
+  }
+  const double sum = va + vb + vc;
+  return t.p0 + ab * (vb / sum) + ac * (vc / sum);
+}
+
 // Whether the triangle's plane is farther away.
 inline bool is_plainly_beyond(Vec3d x, const SurfaceTriangle& t, double distance) {
   constexpr double kSurely = 1 + 1e-9;  // whatever rounding does
