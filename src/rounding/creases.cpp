@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <optional>
+#include <span>
 #include <tuple>
 #include <utility>
 
@@ -40,6 +41,7 @@ struct Offset {
   std::array<Vec3d, 3> p;
   Vec3d normal;  // of its face
   Vec3d low, high;
+  double beside;  // how far from it places may lie that count as over it
 };
 
 struct TrianglePair {
@@ -122,13 +124,21 @@ class CreaseFinder {
     for (const SurfaceTriangle& t : in_.surface.triangles()) {
       const Vec3d normal = in_.regions.planes[t.region].normal;
       const Vec3d down = normal * r_;
-      Offset o{{t.p0 - down, t.p1 - down, t.p2 - down}, normal, {}, {}};
+      Offset o{{t.p0 - down, t.p1 - down, t.p2 - down}, normal, {}, {}, beside(t)};
       o.low = min(o.p[0], min(o.p[1], o.p[2]));
       o.high = max(o.p[0], max(o.p[1], o.p[2]));
       append_triangle_boxes(o.p, r_, std::uint32_t(offsets_.size()), boxes);
       offsets_.push_back(o);
     }
     return boxes;
+  }
+
+  // Over it is what is within the tolerance of all its sides' lines: at an acute corner that is farther from it.
+  [[nodiscard]] double beside(const SurfaceTriangle& t) const {
+    const double longest = std::max(
+        {length_squared(t.p1 - t.p0), length_squared(t.p2 - t.p1), length_squared(t.p0 - t.p2)});
+    const double area = 0.5 * length(cross(t.p1 - t.p0, t.p2 - t.p0));
+    return tolerance_ * (3 + longest / area);
   }
 
   // Visits each half-edge of the solid that is between two faces.
@@ -395,8 +405,12 @@ class CreaseFinder {
     CreaseCutter cutter = make_cutter();
     cutter.set_edges({{{edge.p0, edge.p1}}});
     const Box box = box_about(edge);
+    const std::array<CurveBound, 4> wedge{{{edge.inward0, -dot(edge.inward0, edge.p0)},
+                                           {edge.inward1, -dot(edge.inward1, edge.p0)},
+                                           {-edge.direction, dot(edge.direction, edge.p0)},
+                                           {edge.direction, -dot(edge.direction, edge.p1)}}};
     for_faces_near(box.low, box.high, [&](std::uint32_t face, const auto& triangles) {
-      if (face == edge.face0 || face == edge.face1) return;
+      if (face == edge.face0 || face == edge.face1 || !may_reach_into(wedge, triangles)) return;
       if (!matters(face, std::array{edge.face0, edge.face1})) return;
       for (CreaseCurve& curve :
            face_edge_creases(plane(face), {edge.p0, edge.direction}, r_, 2 * in_.size + 4 * r_)) {
@@ -438,22 +452,35 @@ class CreaseFinder {
 
   void add_face_corners(const Corner& corner, std::vector<CreaseCurve>& out) const {
     CreaseCutter cutter = make_cutter();
+    std::vector<CurveBound> cone;
+    for (const Vec3d d : corner.directions) cone.push_back({d, -dot(d, corner.point)});
     for_faces_near(
         corner.point - Vec3d(r_), corner.point + Vec3d(r_),
         [&](std::uint32_t face, const auto& triangles) {
+          if (!may_reach_into(cone, triangles)) return;
           if (std::ranges::count(corner.faces, face) > 0 || !matters(face, corner.faces)) return;
           std::optional<CreaseCurve> curve = face_corner_crease(plane(face), corner.point, r_);
           if (!curve) return;
           curve->face_a = face;
-          std::vector<CurveBound> bounds;
+          std::vector<CurveBound> bounds = cone;
           add_sides(triangles, bounds);
-          for (const Vec3d d : corner.directions) {
-            bounds.push_back({d, -dot(d, corner.point)});
-          }
           cutter.cut(
               *curve, bounds,
               [&](Vec3d x) { return touches(corner, x) && is_over_any(triangles, x); }, out);
         });
+  }
+
+  // Whether a place over one of the triangles may lie beneath all of some planes.
+  [[nodiscard]] bool may_reach_into(std::span<const CurveBound> planes,
+                                    const std::vector<std::uint32_t>& triangles) const {
+    return std::ranges::any_of(triangles, [&](std::uint32_t i) {
+      const Offset& o = offsets_[i];
+      const double least = o.beside + tolerance_;
+      return std::none_of(planes.begin(), planes.end(), [&](const CurveBound& plane) {
+        const auto height = [&](Vec3d p) { return plane.alpha + dot(plane.normal, p); };
+        return std::min({height(o.p[0]), height(o.p[1]), height(o.p[2])}) > least;
+      });
+    });
   }
 
   // Where a point crosses the sides of a face's triangles.
