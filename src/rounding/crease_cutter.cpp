@@ -26,6 +26,14 @@ std::pair<Vec3d, Vec3d> box_of(const CreaseCurve& curve) {
   return {min(p0, p1) - bulge, max(p0, p1) + bulge};
 }
 
+bool is_in_reach(const SurfaceTriangle& t, Vec3d low, Vec3d high) {
+  const Vec3d t_low = min(t.p0, min(t.p1, t.p2)), t_high = max(t.p0, max(t.p1, t.p2));
+  for (int axis = 0; axis < 3; ++axis) {
+    if (t_low[axis] > high[axis] || t_high[axis] < low[axis]) return false;
+  }
+  return true;
+}
+
 // A convex function's value and slope at a place.
 struct Sample {
   double u, value, slope;
@@ -107,14 +115,14 @@ void CreaseCutter::cut_reached(const CreaseCurve& curve, std::vector<CreaseCurve
   near_.clear();
   const auto [low, high] = box_of(curve);
   const Vec3d reach(r_ + tolerance_);
-  surface_.for_each_near(low - reach, high + reach,
-                         [&](const SurfaceTriangle& t) { near_.push_back(&t); });
+  const Vec3d near_low = low - reach, near_high = high + reach;
+  surface_.for_each_near(near_low, near_high, [&](const SurfaceTriangle& t) {
+    if (is_in_reach(t, near_low, near_high)) near_.push_back(&t);
+  });
   std::ranges::sort(near_);
   near_.erase(std::unique(near_.begin(), near_.end()), near_.end());
   at_.assign({curve.u0, curve.u1});
-  for (const SurfaceTriangle* t : near_) {
-    if (t->region != curve.face_a && t->region != curve.face_b) add_reaches(curve, *t);
-  }
+  add_reaches_of_all(curve);
   for_pieces(
       curve, at_, [&](Vec3d x) { return is_on_erosion(x, curve); },
       [&](const CreaseCurve& piece) { out.push_back(piece); });
@@ -126,7 +134,7 @@ bool CreaseCutter::is_on_erosion(Vec3d x, const CreaseCurve& curve) const {
   bool on_a = curve.face_a == kNone, on_b = curve.face_b == kNone, touches = false;
   bool is_free = true;
   const auto look = [&](const SurfaceTriangle& t) {
-    if (!is_free) return;
+    if (!is_free || is_plainly_beyond(x, t, most)) return;
     const double squared = length_squared(x - nearest_on_triangle(x, t));
     if (squared > most * most) return;
     is_free = squared >= least * least;
@@ -143,16 +151,20 @@ bool CreaseCutter::is_on_erosion(Vec3d x, const CreaseCurve& curve) const {
 }
 
 // Where the curve comes within r of a triangle, or leaves it.
-void CreaseCutter::add_reaches(const CreaseCurve& curve, const SurfaceTriangle& t) {
-  if (is_apart(curve, t) || is_at_edge(t)) return;
+void CreaseCutter::add_reaches_of_all(const CreaseCurve& curve) {
+  samples_.clear();
   // No point of the curve is farther from its middle than half its length.
   const Vec3d middle = curve.at(0.5 * (curve.u0 + curve.u1));
   const double half = 0.5 * (curve.u1 - curve.u0) * length_scale(curve);
-  if (length(middle - nearest_on_triangle(middle, t)) - half >= threshold_) return;
-  if (curve.is_line) {
-    add_reaches_of_line(curve, t);
-  } else {
-    add_reaches_of_arc(curve, t);
+  for (const SurfaceTriangle* const t : near_) {
+    if (t->region == curve.face_a || t->region == curve.face_b) continue;
+    if (is_apart(curve, *t) || is_at_edge(*t)) continue;
+    if (length(middle - nearest_on_triangle(middle, *t)) - half >= threshold_) continue;
+    if (curve.is_line) {
+      add_reaches_of_line(curve, *t);
+    } else {
+      add_reaches_of_arc(curve, *t);
+    }
   }
 }
 
@@ -192,27 +204,36 @@ void CreaseCutter::add_reaches_of_arc(const CreaseCurve& arc, const SurfaceTrian
     return length(x - nearest_on_triangle(x, t)) - threshold_;
   };
   // Minima are looked for between samples.
-  const int samples = std::max(4, int(std::ceil((arc.u1 - arc.u0) / radians(8))));
-  const double step = (arc.u1 - arc.u0) / samples;
-  std::vector<double> us, values;
-  for (int i = 0; i <= samples; ++i) {
-    us.push_back(arc.u0 + step * i);
-    values.push_back(above(us.back()));
+  if (samples_.empty()) sample(arc);
+  values_.clear();
+  for (const auto& [u, x] : samples_) {
+    values_.push_back(length(x - nearest_on_triangle(x, t)) - threshold_);
   }
-  for (std::size_t i = 0; i < us.size(); ++i) {
-    const bool is_least = (i == 0 || values[i] <= values[i - 1]) &&
-                          (i + 1 == us.size() || values[i] <= values[i + 1]);
-    if (!is_least || values[i] <= 0) continue;
-    const double low = us[i == 0 ? 0 : i - 1], high = us[std::min(i + 1, us.size() - 1)];
+  const auto u_of = [&](std::size_t i) { return samples_[i].u; };
+  const std::size_t last = samples_.size() - 1;
+  for (std::size_t i = 0; i <= last; ++i) {
+    const bool is_least =
+        (i == 0 || values_[i] <= values_[i - 1]) && (i == last || values_[i] <= values_[i + 1]);
+    if (!is_least || values_[i] <= 0) continue;
+    const double low = u_of(i == 0 ? 0 : i - 1), high = u_of(std::min(i + 1, last));
     const double u = minimum(above, length_scale(arc), low, high);
     if (above(u) >= 0) continue;
     at_.push_back(root(above, u, low));
     at_.push_back(root(above, u, high));
   }
-  for (std::size_t i = 0; i + 1 < us.size(); ++i) {
-    if ((values[i] < 0) == (values[i + 1] < 0)) continue;
-    const bool first = values[i] < 0;
-    at_.push_back(root(above, us[first ? i : i + 1], us[first ? i + 1 : i]));
+  for (std::size_t i = 0; i < last; ++i) {
+    if ((values_[i] < 0) == (values_[i + 1] < 0)) continue;
+    const bool first = values_[i] < 0;
+    at_.push_back(root(above, u_of(first ? i : i + 1), u_of(first ? i + 1 : i)));
+  }
+}
+
+void CreaseCutter::sample(const CreaseCurve& arc) {
+  const int count = std::max(4, int(std::ceil((arc.u1 - arc.u0) / radians(8))));
+  const double step = (arc.u1 - arc.u0) / count;
+  for (int i = 0; i <= count; ++i) {
+    const double u = arc.u0 + step * i;
+    samples_.push_back({u, arc.at(u)});
   }
 }
 

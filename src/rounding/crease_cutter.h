@@ -50,9 +50,10 @@ class CreaseCutter {
   void for_pieces(const CreaseCurve& curve, std::vector<double>& at, const Stays& stays,
                   const Take& take) const;
   [[nodiscard]] bool is_on_erosion(Vec3d x, const CreaseCurve& curve) const;
-  void add_reaches(const CreaseCurve& curve, const SurfaceTriangle& t);
+  void add_reaches_of_all(const CreaseCurve& curve);
   void add_reaches_of_line(const CreaseCurve& line, const SurfaceTriangle& t);
   void add_reaches_of_arc(const CreaseCurve& arc, const SurfaceTriangle& t);
+  void sample(const CreaseCurve& arc);
   [[nodiscard]] bool is_at_edge(const SurfaceTriangle& t) const;
   [[nodiscard]] bool is_apart(const CreaseCurve& curve, const SurfaceTriangle& t) const;
   [[nodiscard]] double shortest(const CreaseCurve& curve) const;
@@ -63,6 +64,13 @@ class CreaseCutter {
   std::vector<std::pair<Vec3d, Vec3d>> edges_;
   std::vector<const SurfaceTriangle*> near_;
   std::vector<double> at_;
+  // Of an arc, once they have been asked for; and the heights above what is nearer than r of a triangle there.
+  struct Place {
+    double u;
+    Vec3d x;
+  };
+  std::vector<Place> samples_;
+  std::vector<double> values_;
 };
 
 template <class Stays, class Take>
