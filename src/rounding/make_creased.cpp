@@ -214,13 +214,15 @@ class CreasedMaker {
       });
       return found;
     };
-    std::vector<std::uint32_t> faces;
-    for (const SurfaceTriangle& t : solid.surface.triangles()) {
-      if (std::ranges::binary_search(rounded, t.region)) continue;
-      const Vec3d middle = (t.p0 + t.p1 + t.p2) / 3.0;
-      if (solid.is_kept(middle, in_.regions.planes[t.region].normal, t.region)) continue;
-      if (!is_at_crease(middle)) faces.push_back(t.region);
-    }
+    const std::span<const SurfaceTriangle> triangles = solid.surface.triangles();
+    std::vector<std::uint32_t> faces = parallel_collect<std::uint32_t>(
+        triangles.size(), kTrianglesAtOnce, [&](std::size_t i, std::vector<std::uint32_t>& list) {
+          const SurfaceTriangle& t = triangles[i];
+          if (std::ranges::binary_search(rounded, t.region)) return;
+          const Vec3d middle = (t.p0 + t.p1 + t.p2) / 3.0;
+          if (solid.is_kept(middle, in_.regions.planes[t.region].normal, t.region)) return;
+          if (!is_at_crease(middle)) list.push_back(t.region);
+        });
     std::ranges::sort(faces);
     faces.erase(std::unique(faces.begin(), faces.end()), faces.end());
     return faces;
@@ -314,7 +316,7 @@ class CreasedMaker {
     }
     const double least = share * (kSamples * (kSamples + 1) / 2);
     std::size_t spared = 0;
-    for (std::size_t i = 0; i < in_bands.size(); ++i) {
+    for (std::size_t i = 0; i < in_bands.size() && !(double(spared) > least); ++i) {
       if (!(double(spared + in_bands.size() - i) > least)) return false;
       spared += surface.is_near(in_bands[i], r_, triangle.region) ? 0 : 1;
     }
