@@ -86,31 +86,35 @@ std::vector<std::uint32_t> Clearance::find_overlapping(std::span<const Cut> cuts
 std::vector<std::uint32_t> Clearance::find_blocked(std::span<const Cut> cuts, Known& known,
                                                    Meet meet) {
   blocked_.assign(cuts.size(), false);
-  const std::vector<std::uint32_t> changed = changed_since(cuts, known);
+  std::vector<std::uint32_t> changed = changed_since(cuts, known.free);
   (this->*meet)(cuts, changed);
-  remember(cuts, changed, known);
   std::vector<std::uint32_t> out;
   for (std::uint32_t i = 0; i < blocked_.size(); ++i) {
     if (blocked_[i]) out.push_back(i);
   }
+  std::erase_if(changed, [&](std::uint32_t i) { return blocked_[i]; });
+  known.found = std::move(changed);
   return out;
 }
 
+void Clearance::remember(std::span<const Cut> cuts) {
+  for (Known* const known : {&known_free_, &known_apart_}) {
+    for (const std::uint32_t i : known->found) {
+      known->free.insert_or_assign(key_of(cuts[i]), cuts[i].planes);
+    }
+    known->found.clear();
+  }
+}
+
 // The cuts that are not known as they are.
-std::vector<std::uint32_t> Clearance::changed_since(std::span<const Cut> cuts, const Known& known) {
+std::vector<std::uint32_t> Clearance::changed_since(std::span<const Cut> cuts,
+                                                    const PlanesOfCuts& known) {
   std::vector<std::uint32_t> changed;
   for (std::uint32_t i = 0; i < cuts.size(); ++i) {
     const auto found = known.find(key_of(cuts[i]));
     if (found == known.end() || found->second != cuts[i].planes) changed.push_back(i);
   }
   return changed;
-}
-
-void Clearance::remember(std::span<const Cut> cuts, std::span<const std::uint32_t> changed,
-                         Known& known) const {
-  for (const std::uint32_t i : changed) {
-    if (!blocked_[i]) known.insert_or_assign(key_of(cuts[i]), cuts[i].planes);
-  }
 }
 
 // Of the items that are not blocked yet.

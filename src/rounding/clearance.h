@@ -59,9 +59,11 @@ class Clearance {
   Clearance(const WeldedMesh& mesh, const FlatRegions& regions, std::uint32_t shell, double radius);
 
   // Indices of the cuts that other surface reaches into, or that leave their faces; and of those that overlap. What is
-  // asked again about cuts that haven't changed is known.
+  // asked again about cuts that haven't changed since they were remembered is known.
   [[nodiscard]] std::vector<std::uint32_t> find_in_surface(std::span<const Cut> cuts);
   [[nodiscard]] std::vector<std::uint32_t> find_overlapping(std::span<const Cut> cuts);
+  // The cuts that were asked about last.
+  void remember(std::span<const Cut> cuts);
 
  private:
   struct TriangleView {
@@ -70,16 +72,18 @@ class Clearance {
     std::uint32_t region;
   };
 
-  using Known = std::unordered_map<std::uint64_t, std::vector<CutPlane>>;
+  using PlanesOfCuts = std::unordered_map<std::uint64_t, std::vector<CutPlane>>;
+  struct Known {
+    PlanesOfCuts free;
+    std::vector<std::uint32_t> found;  // free ones, to be remembered
+  };
 
   void meet_surface(std::span<const Cut> cuts, std::span<const std::uint32_t> changed);
   void meet_each_other(std::span<const Cut> cuts, std::span<const std::uint32_t> changed);
   using Meet = void (Clearance::*)(std::span<const Cut>, std::span<const std::uint32_t> changed);
   std::vector<std::uint32_t> find_blocked(std::span<const Cut> cuts, Known& known, Meet meet);
   [[nodiscard]] static std::vector<std::uint32_t> changed_since(std::span<const Cut> cuts,
-                                                                const Known& known);
-  void remember(std::span<const Cut> cuts, std::span<const std::uint32_t> changed,
-                Known& known) const;
+                                                                const PlanesOfCuts& known);
   [[nodiscard]] BoxTree make_tree(std::span<const Cut> cuts,
                                   std::span<const std::uint32_t> items) const;
   [[nodiscard]] bool is_blocked_by(const Cut& cut, const TriangleView& triangle);

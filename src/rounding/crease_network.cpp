@@ -53,6 +53,7 @@ ShellNetwork NetworkBuilder::build(std::uint32_t shell, bool convex) {
       network.left_sharp = std::move(left);
       return network;
     }
+    if (clearance) clearance->remember(cuts_);
     // Leave those edges sharp and look at their corners again.
     shortened += refused.shortened.size() + refused.no_longer_skipped;
     narrow += refused.narrow.size();
@@ -173,9 +174,10 @@ bool NetworkBuilder::add_cut(const NetworkArc& arc, const End& end0, const End& 
   cut.mitred = end0.mitred;
   cut.mitred.insert(cut.mitred.end(), end1.mitred.begin(), end1.mitred.end());
   const Vec3d out = normalize(a.normal + b.normal);
-  cut.planes = {{a.normal, a.d, arc.arc.face_a},
-                {b.normal, b.d, arc.arc.face_b},
-                {-out, -dot(out, lines[1])}};
+  cut.planes.reserve(5);
+  cut.planes.assign({{a.normal, a.d, arc.arc.face_a},
+                     {b.normal, b.d, arc.arc.face_b},
+                     {-out, -dot(out, lines[1])}});
   std::array<std::array<Vec3d, 3>, 2> at;
   for (const auto& [end, points] : {std::pair(&end0, &at[0]), std::pair(&end1, &at[1])}) {
     const Vec3d n = end->plane_normal;
@@ -187,6 +189,7 @@ bool NetworkBuilder::add_cut(const NetworkArc& arc, const End& end0, const End& 
   }
   if (dot(at[1][0] - at[0][0], axis) <= kLengthTolerance * size_) return false;
   const double beyond = size_ + radius_;
+  cut.outline.reserve(9);
   cut.axes = {{end0.point - axis * beyond, end1.point + axis * beyond}};
   for (std::size_t i = 0; i < 3; ++i) {
     cut.outline.push_back({at[0][i], at[1][i]});
@@ -204,6 +207,8 @@ void NetworkBuilder::add_corner_cut(const CornerErosion& erosion) {
   cut.is_corner = true;
   cut.half_edge = ring_[0].half_edge;
   cut.ends = {mesh_.origin(cut.half_edge), mesh_.origin(cut.half_edge)};
+  cut.planes.reserve(2 * ring_.size());
+  cut.outline.reserve(3 * ring_.size() + 2 * erosion.short_arcs.size());
   for (std::size_t i = 0; i < ring_.size(); ++i) {
     const RingEdge& edge = ring_[i];
     const Plane& plane = regions_.planes[edge.face_after];
