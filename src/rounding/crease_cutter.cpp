@@ -26,14 +26,6 @@ std::pair<Vec3d, Vec3d> box_of(const CreaseCurve& curve) {
   return {min(p0, p1) - bulge, max(p0, p1) + bulge};
 }
 
-bool is_in_reach(const SurfaceTriangle& t, Vec3d low, Vec3d high) {
-  const Vec3d t_low = min(t.p0, min(t.p1, t.p2)), t_high = max(t.p0, max(t.p1, t.p2));
-  for (int axis = 0; axis < 3; ++axis) {
-    if (t_low[axis] > high[axis] || t_high[axis] < low[axis]) return false;
-  }
-  return true;
-}
-
 // A convex function's value and slope at a place.
 struct Sample {
   double u, value, slope;
@@ -117,7 +109,7 @@ void CreaseCutter::cut_reached(const CreaseCurve& curve, std::vector<CreaseCurve
   const Vec3d reach(r_ + tolerance_);
   const Vec3d near_low = low - reach, near_high = high + reach;
   surface_.for_each_near(near_low, near_high, [&](const SurfaceTriangle& t) {
-    if (is_in_reach(t, near_low, near_high)) near_.push_back(&t);
+    if (reaches_into(t, near_low, near_high)) near_.push_back(&t);
   });
   std::ranges::sort(near_);
   near_.erase(std::unique(near_.begin(), near_.end()), near_.end());

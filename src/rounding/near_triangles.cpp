@@ -131,7 +131,7 @@ NearTriangles find_near_triangles(const SolidSurface& surface, const SurfaceTria
   };
   surface.for_each_near(low, high, [&](const SurfaceTriangle& other) {
     const bool are_too_many = depths.size() > kMostDepths && others.size() > kMostOthers;
-    if (other.region == triangle.region || are_too_many) return;
+    if (other.region == triangle.region || are_too_many || !reaches_into(other, low, high)) return;
     if (is_beyond_reach(offset, normal, other, (1 - kSame) * radius)) return;
     const auto index = std::uint32_t(&other - surface.triangles().data());
     if (is_listed(index) || surface.is_joined(triangle.region, other.region)) return;

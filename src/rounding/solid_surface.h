@@ -45,6 +45,14 @@ inline Vec3d nearest_on_triangle(Vec3d x, const SurfaceTriangle& t) {
   return t.p0 + ab * (vb / sum) + ac * (vc / sum);
 }
 
+// Whether its box reaches into another one.
+inline bool reaches_into(const SurfaceTriangle& t, Vec3d low, Vec3d high) {
+  const Vec3d t_low = min(t.p0, min(t.p1, t.p2)), t_high = max(t.p0, max(t.p1, t.p2));
+  for (int axis = 0; axis < 3; ++axis) {
+    if (t_low[axis] > high[axis] || t_high[axis] < low[axis]) return false;
+  }
+  return true;
+}
 // Whether the triangle's plane is farther away.
 inline bool is_plainly_beyond(Vec3d x, const SurfaceTriangle& t, double distance) {
   constexpr double kSurely = 1 + 1e-9;  // whatever rounding does
