@@ -70,8 +70,11 @@ class CreasedMaker {
     if (r_ > outer_.size() || r_ == 0) return std::nullopt;
     SolidSurface surface = make_surface();
     if (has_smooth_edges_ && is_too_fine(surface)) return std::nullopt;
-    const std::vector<FacePair> sharp = join_smooth_faces(surface);
-    surface.set_walls(find_thin_walls({surface, sharp, in_.regions, r_}));
+    const auto [smooth, sharp] = pairs_of_faces();
+    if (!smooth.empty()) {
+      surface.set_joined(find_smooth_reach({surface, smooth, sharp, in_.regions, r_}));
+    }
+    surface.set_walls(find_thin_walls({surface, smooth, sharp, in_.regions, r_}));
     VariedCreases found = find(surface);
     if (found.curves.empty()) return std::nullopt;
     auto [bands, lists] = find_bands(surface);
@@ -122,19 +125,19 @@ class CreasedMaker {
     return {std::move(triangles), r_};
   }
 
-  // Comes out: faces that meet in convex edges, each pair in both orders; sorted.
-  std::vector<FacePair> join_smooth_faces(SolidSurface& surface) const {
+  // Faces that meet in smooth edges, and in convex ones, each pair in both orders; sorted.
+  struct FacePairs {
     std::vector<FacePair> smooth, sharp;
+  };
+  [[nodiscard]] FacePairs pairs_of_faces() const {
+    FacePairs out;
     for_edges([&](std::uint32_t h, FacePair faces) {
-      if (in_.kinds[h] == EdgeKind::smooth) smooth.push_back(faces);
-      if (in_.kinds[h] == EdgeKind::convex) sharp.push_back(faces);
+      if (in_.kinds[h] == EdgeKind::smooth) out.smooth.push_back(faces);
+      if (in_.kinds[h] == EdgeKind::convex) out.sharp.push_back(faces);
     });
-    sort_pairs(smooth);
-    sort_pairs(sharp);
-    if (!smooth.empty()) {
-      surface.set_joined(find_smooth_reach({surface, smooth, sharp, in_.regions, r_}));
-    }
-    return sharp;
+    sort_pairs(out.smooth);
+    sort_pairs(out.sharp);
+    return out;
   }
 
   template <class Visit>
@@ -199,7 +202,8 @@ class CreasedMaker {
     pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
   }
 
-  // Faces of which nothing is kept, and that have no crease, nor one near: walls too near have taken them away.
+  // Faces of which nothing is kept, and that have no crease, nor one near, nor a way for a ball to grow: walls too near
+  // have taken them away. Facets at the tip of a sharp wedge are far from its crease.
   [[nodiscard]] std::vector<std::uint32_t> faces_that_vanish(const CreasedSolid& solid) const {
     const std::span<const CreaseCurve> creases = solid.pipes.creases();
     std::vector<std::uint32_t> rounded;
@@ -220,8 +224,10 @@ class CreasedMaker {
           const SurfaceTriangle& t = triangles[i];
           if (std::ranges::binary_search(rounded, t.region)) return;
           const Vec3d middle = (t.p0 + t.p1 + t.p2) / 3.0;
-          if (solid.is_kept(middle, in_.regions.planes[t.region].normal, t.region)) return;
-          if (!is_at_crease(middle)) list.push_back(t.region);
+          const Vec3d normal = in_.regions.planes[t.region].normal;
+          if (solid.is_kept(middle, normal, t.region) || is_at_crease(middle)) return;
+          const double r = solid.field.at(middle) - solid.tolerance;
+          if (gets_stuck(solid.surface, middle, normal, t.region, r)) list.push_back(t.region);
         });
     std::ranges::sort(faces);
     faces.erase(std::unique(faces.begin(), faces.end()), faces.end());

@@ -73,7 +73,8 @@ using FacePair = std::pair<std::uint32_t, std::uint32_t>;  // regions
 // What has less than two radii of material between its sides.
 struct ThinWalls {
   std::vector<std::uint32_t> sides;  // triangles, by their place in the surface; sorted
-  // Faces that meet in an edge as sharp as that: balls may roll out of there. Each pair in both orders; sorted.
+  // Faces that meet in an edge as sharp as that, or whose surfaces do: balls may roll out of there. Each pair in both
+  // orders; sorted.
   std::vector<FacePair> blades;
   // Of corners as sharp as that, all of whose faces are sides: these, and a number for each corner; sorted.
   std::vector<std::pair<std::uint32_t, std::uint32_t>> needles;

@@ -178,6 +178,21 @@ class GrowingBall {
     return way;
   }
 
+  // Facets that are touched where they meet, as far as touching is told, are one.
+  [[nodiscard]] bool are_of_blade(const Contact& a, const Contact& b) const {
+    if (surface_.is_blade(a.triangle->region, b.triangle->region)) return true;
+    const auto is_at = [&](const Contact& c, const Contact& other) {
+      return dot(c.direction, other.direction) > 1 - 2 * touching_;
+    };
+    for (const Contact& c : contacts_) {
+      if (!is_at(c, a)) continue;
+      for (const Contact& d : contacts_) {
+        if (is_at(d, b) && surface_.is_blade(c.triangle->region, d.triangle->region)) return true;
+      }
+    }
+    return false;
+  }
+
   // A ball in a blade, or in a needle, goes on however slowly.
   [[nodiscard]] bool is_stuck() const {
     const double speed = length(middle_);
@@ -185,7 +200,7 @@ class GrowingBall {
     for (const Contact& a : contacts_) {
       for (const Contact& b : contacts_) {
         if (!are_opposite(a, b)) continue;
-        if (!surface_.is_blade(a.triangle->region, b.triangle->region)) return true;
+        if (!are_of_blade(a, b)) return true;
         in_blade = true;
       }
     }
@@ -205,6 +220,59 @@ class GrowingBall {
   std::vector<Contact> near_, contacts_;
   std::vector<Vec3d> directions_;             // of contacts, without those on planes of others
   mutable std::vector<std::uint32_t> faces_;  // of contacts
+};
+
+template <class T>
+void sort_and_unite(std::vector<T>& list) {
+  std::ranges::sort(list);
+  list.erase(std::unique(list.begin(), list.end()), list.end());
+}
+
+// Facets of curved surfaces that meet in an edge: behind the first of a surface, too, balls roll out of the wedge.
+class Blades {
+ public:
+  explicit Blades(const ThinWallInput& input) : in_(input) {}
+
+  // Asked in order of the first.
+  [[nodiscard]] bool hold(const FacePair& faces) const {
+    if (faces.first != first_) {
+      first_ = faces.first;
+      beyond_.clear();
+      for (const std::uint32_t face : around(first_)) {
+        for (const FacePair& pair : pairs_of(in_.sharp, face)) beyond_.push_back(pair.second);
+      }
+      sort_and_unite(beyond_);
+    }
+    if (beyond_.empty()) return false;
+    return std::ranges::any_of(around(faces.second), [&](std::uint32_t face) {
+      return std::ranges::binary_search(beyond_, face);
+    });
+  }
+
+ private:
+  static constexpr int kSteps = 3;  // over smooth edges
+
+  static std::span<const FacePair> pairs_of(std::span<const FacePair> sorted, std::uint32_t face) {
+    return {std::ranges::lower_bound(sorted, face, {}, &FacePair::first),
+            std::ranges::upper_bound(sorted, face, {}, &FacePair::first)};
+  }
+  // The face and those of its surface some steps from it.
+  [[nodiscard]] std::vector<std::uint32_t> around(std::uint32_t face) const {
+    std::vector<std::uint32_t> faces{face};
+    for (std::size_t step = 0, i = 0; step < kSteps; ++step) {
+      for (const std::size_t end = faces.size(); i < end; ++i) {
+        for (const FacePair& pair : pairs_of(in_.smooth, faces[i])) {
+          if (std::ranges::count(faces, pair.second) == 0) faces.push_back(pair.second);
+        }
+      }
+    }
+    return faces;
+  }
+
+  const ThinWallInput& in_;
+  mutable std::uint32_t first_ = kNone;
+  mutable std::vector<std::uint32_t>
+      beyond_;  // faces that the first's surface meets in sharp edges
 };
 
 // Corners of sides; all triangles of one have it at the same place.
@@ -245,7 +313,11 @@ std::vector<std::pair<std::uint32_t, std::uint32_t>> find_needles(
 ThinWalls find_thin_walls(const ThinWallInput& input) {
   const auto normal_of = [&](std::uint32_t face) { return input.regions.planes[face].normal; };
   const auto& triangles = input.surface.triangles();
-  const auto find = [&](std::size_t i, std::vector<std::uint32_t>& sides) {
+  struct Side {
+    std::uint32_t triangle;
+    FacePair opposite;  // the same face twice: of a rod
+  };
+  const auto find = [&](std::size_t i, std::vector<Side>& sides) {
     const std::uint32_t face = triangles[i].region;
     const Vec3d normal = normal_of(face);
     std::vector<Vec3d> around{normal};
@@ -253,20 +325,32 @@ ThinWalls find_thin_walls(const ThinWallInput& input) {
       around.push_back(normal_of(other));
       return !(dot(normal, around.back()) > kOpposite);
     };
-    input.surface.for_each_cut(std::uint32_t(i), normal, input.radius, is_opposite,
-                               [&](const SurfaceTriangle& t) {
-                                 sides.push_back(std::uint32_t(i));
-                                 sides.push_back(std::uint32_t(&t - triangles.data()));
-                               });
-    if (length(nearest_of_hull(around)) < kAround) sides.push_back(std::uint32_t(i));
+    input.surface.for_each_cut(
+        std::uint32_t(i), normal, input.radius, is_opposite, [&](const SurfaceTriangle& t) {
+          sides.push_back({std::uint32_t(i), {face, t.region}});
+          sides.push_back({std::uint32_t(&t - triangles.data()), {t.region, face}});
+        });
+    if (length(nearest_of_hull(around)) < kAround)
+      sides.push_back({std::uint32_t(i), {face, face}});
   };
-  ThinWalls walls{parallel_collect<std::uint32_t>(triangles.size(), kSidesAtOnce, find), {}, {}};
-  std::ranges::sort(walls.sides);
-  walls.sides.erase(std::unique(walls.sides.begin(), walls.sides.end()), walls.sides.end());
+  ThinWalls walls;
+  const Blades blades(input);
   for (const FacePair& pair : input.sharp) {
     if (dot(normal_of(pair.first), normal_of(pair.second)) < kOpposite)
       walls.blades.push_back(pair);
   }
+  std::vector<FacePair> opposite;
+  for (const auto& [triangle, faces] :
+       parallel_collect<Side>(triangles.size(), kSidesAtOnce, find)) {
+    walls.sides.push_back(triangle);
+    if (faces.first != faces.second) opposite.push_back(faces);
+  }
+  sort_and_unite(walls.sides);
+  sort_and_unite(opposite);
+  for (const FacePair& pair : opposite) {
+    if (blades.hold(pair)) walls.blades.push_back(pair);
+  }
+  sort_and_unite(walls.blades);
   walls.needles = find_needles(input, walls.sides);
   return walls;
 }

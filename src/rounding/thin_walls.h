@@ -21,8 +21,8 @@ namespace arris {
 
 struct ThinWallInput {
   const SolidSurface& surface;
-  std::span<const FacePair>
-      sharp;  // faces that meet in such edges; sorted, each pair in both orders
+  // Faces that meet in such edges; sorted, each pair in both orders.
+  std::span<const FacePair> smooth, sharp;
   const FlatRegions& regions;
   double radius;
 };
