@@ -109,6 +109,7 @@ void SolidSurface::set_walls(ThinWalls walls) {
   blades_ = std::move(walls.blades);
   needles_ = std::move(walls.needles);
   wall_tree_ = BoxTree(boxes_of(triangles_, walls.sides, reach_));
+  rod_tree_ = BoxTree(boxes_of(triangles_, walls.rods, reach_));
 }
 
 bool SolidSurface::is_needle(std::span<const std::uint32_t> faces) const {
@@ -160,7 +161,8 @@ bool SolidSurface::is_entered(Vec3d origin, Vec3d direction, double after, doubl
 std::size_t SolidSurface::bytes() const {
   return triangles_.size() * sizeof(SurfaceTriangle) +
          (joined_.size() + blades_.size() + needles_.size()) * sizeof(FacePair) +
-         wall_tree_.bytes() + firm_.size() * sizeof(std::uint32_t) + tree_.bytes();
+         wall_tree_.bytes() + rod_tree_.bytes() + firm_.size() * sizeof(std::uint32_t) +
+         tree_.bytes();
 }
 
 }  // namespace arris

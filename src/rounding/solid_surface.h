@@ -72,11 +72,11 @@ using FacePair = std::pair<std::uint32_t, std::uint32_t>;  // regions
 
 // What has less than two radii of material between its sides.
 struct ThinWalls {
-  std::vector<std::uint32_t> sides;  // triangles, by their place in the surface; sorted
+  std::vector<std::uint32_t> sides, rods;  // triangles, by their place in the surface; sorted
   // Faces that meet in an edge as sharp as that, or whose surfaces do: balls may roll out of there. Each pair in both
   // orders; sorted.
   std::vector<FacePair> blades;
-  // Of corners as sharp as that, all of whose faces are sides: these, and a number for each corner; sorted.
+  // Of corners as sharp as that, all of whose faces are sides of rods: these, and a number for each corner; sorted.
   std::vector<std::pair<std::uint32_t, std::uint32_t>> needles;
 };
 
@@ -135,10 +135,14 @@ class SolidSurface {
   void for_each_near(Vec3d low, Vec3d high, Visit&& visit) const {
     tree_.for_each_near(low, high, [&](std::uint32_t i) { visit(triangles_[i]); });
   }
-  // The same for the sides of thin walls alone.
+  // The same for the sides of thin walls alone, and for those of rods.
   template <class Visit>
   void for_each_wall_near(Vec3d low, Vec3d high, Visit&& visit) const {
     wall_tree_.for_each_near(low, high, [&](std::uint32_t i) { visit(triangles_[i]); });
+  }
+  template <class Visit>
+  void for_each_rod_near(Vec3d low, Vec3d high, Visit&& visit) const {
+    rod_tree_.for_each_near(low, high, [&](std::uint32_t i) { visit(triangles_[i]); });
   }
   // Visits those of other regions, if they are asked for, into which a ball may cut that touches a triangle, of the
   // given normal; some more than once.
@@ -158,7 +162,7 @@ class SolidSurface {
   std::vector<SurfaceTriangle> triangles_;
   std::vector<FacePair> joined_, blades_, needles_;  // sorted
   std::vector<std::uint32_t> firm_;
-  BoxTree tree_, wall_tree_{{}};
+  BoxTree tree_, wall_tree_{{}}, rod_tree_{{}};
   double reach_;
 };
 

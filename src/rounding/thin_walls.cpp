@@ -19,11 +19,10 @@ constexpr double kTouches = 1.0 / 128, kTouchesFinely = 1e-5, kFar = 2;
 // Cosine of how much faces, or directions to them, turn at least that are opposite: by 143 degrees. A ball between them
 // grows by less than a third of its centre's way.
 constexpr double kOpposite = -0.8;
-// The same of several faces all around: of the hull of their normals, the distance from the origin is as much.
+// The same of three all around, of which no two are opposite: the distance of their hull from the origin is as much. Two
+// of them are this far apart at least; and those of a rod at least 66 degrees, else two are of one side.
 const double kAround = std::sqrt(0.5 * (1 + kOpposite));
-// Cosine below which two of these are apart at least: of up to four unit vectors, weighted, so that their sum is 1, the
-// squared length is at least 1/4 + 3/4 of the least cosine.
-constexpr double kLeastAround = -0.2;
+constexpr double kApart = -0.2, kOneSide = 0.4;
 // By the way of its centre: slower than this it grows nowhere; the same between the sides of a blade.
 constexpr double kStuck = 0.05, kStuckInBlade = 1e-4;
 // First radii are halved so often where there is no room.
@@ -91,13 +90,45 @@ Vec3d nearest_of_hull(const std::vector<Vec3d>& directions) {
   return nearest;
 }
 
-// Whether a ball that touches faces of these normals grows by less than a third of its centre's way.
-bool are_around(const std::vector<Vec3d>& normals) {
-  double least = 1;
-  for (const Vec3d a : normals) {
-    for (const Vec3d b : normals) least = std::min(least, dot(a, b));
+// Whether a ball that touches in these directions, or faces of these normals, grows by less than a third of its centre's
+// way.
+bool are_around(Vec3d a, Vec3d b, Vec3d c) {
+  const auto [least, most] = std::minmax({dot(a, b), dot(a, c), dot(b, c)});
+  return least < kApart && most < kOneSide &&
+         length_squared(nearest_on_triangle({}, {a, b, c, 0})) < kAround * kAround;
+}
+
+bool are_around(const std::vector<Vec3d>& directions) {
+  const auto last = directions.end();
+  for (auto a = directions.begin(); a != last; ++a) {
+    for (auto b = a + 1; b != last; ++b) {
+      if (dot(*a, *b) < kOneSide &&
+          std::any_of(b + 1, last, [&](Vec3d c) { return are_around(*a, *b, c); })) {
+        return true;
+      }
+    }
   }
-  return least < kOpposite || (least < kLeastAround && length(nearest_of_hull(normals)) < kAround);
+  return false;
+}
+
+// A triangle that a ball may touch.
+struct Touchable {
+  const SurfaceTriangle* triangle;
+  Vec3d normal;
+};
+
+// Whether something of each lies in front of the other, where a ball may touch both.
+bool face_each_other(const Touchable& a, const Touchable& b) {
+  const auto is_before = [](const Touchable& plane, const SurfaceTriangle& t) {
+    const auto height = [&](Vec3d p) { return dot(plane.normal, p - plane.triangle->p0); };
+    return std::min({height(t.p0), height(t.p1), height(t.p2)}) < 0;
+  };
+  return is_before(a, *b.triangle) && is_before(b, *a.triangle);
+}
+
+// Whether three triangles, of which two face each other, may be sides of a rod.
+bool are_around(const Touchable& a, const Touchable& b, const Touchable& c) {
+  return are_around(a.normal, b.normal, c.normal) && face_each_other(a, c) && face_each_other(b, c);
 }
 
 class GrowingBall {
@@ -204,7 +235,7 @@ class GrowingBall {
         in_blade = true;
       }
     }
-    if (!in_blade && directions_.size() > 2 && speed < kAround) {
+    if (!in_blade && speed < kAround && are_around(directions_)) {
       faces_.clear();
       for (const Contact& c : contacts_) faces_.push_back(c.triangle->region);
       in_blade = surface_.is_needle(faces_);
@@ -275,7 +306,7 @@ class Blades {
       beyond_;  // faces that the first's surface meets in sharp edges
 };
 
-// Corners of sides; all triangles of one have it at the same place.
+// Corners of sides of rods; all triangles of one have it at the same place.
 std::vector<std::pair<std::uint32_t, std::uint32_t>> find_needles(
     const ThinWallInput& input, std::span<const std::uint32_t> sides) {
   struct Corner {
@@ -318,20 +349,35 @@ ThinWalls find_thin_walls(const ThinWallInput& input) {
     FacePair opposite;  // the same face twice: of a rod
   };
   const auto find = [&](std::size_t i, std::vector<Side>& sides) {
-    const std::uint32_t face = triangles[i].region;
-    const Vec3d normal = normal_of(face);
-    std::vector<Vec3d> around{normal};
-    const auto is_opposite = [&](std::uint32_t other) {
-      around.push_back(normal_of(other));
-      return !(dot(normal, around.back()) > kOpposite);
+    const Touchable own{&triangles[i], normal_of(triangles[i].region)};
+    const auto add = [&](const Touchable& a, const Touchable& b) {
+      sides.push_back(
+          {std::uint32_t(a.triangle - triangles.data()), {a.triangle->region, b.triangle->region}});
     };
-    input.surface.for_each_cut(
-        std::uint32_t(i), normal, input.radius, is_opposite, [&](const SurfaceTriangle& t) {
-          sides.push_back({std::uint32_t(i), {face, t.region}});
-          sides.push_back({std::uint32_t(&t - triangles.data()), {t.region, face}});
-        });
-    if (length(nearest_of_hull(around)) < kAround)
-      sides.push_back({std::uint32_t(i), {face, face}});
+    std::vector<Touchable> across;
+    const auto is_apart = [&](std::uint32_t face) {
+      return dot(own.normal, normal_of(face)) < kApart;
+    };
+    input.surface.for_each_cut(std::uint32_t(i), own.normal, input.radius, is_apart,
+                               [&](const SurfaceTriangle& t) {
+                                 const Touchable other{&t, normal_of(t.region)};
+                                 if (dot(own.normal, other.normal) > kOpposite) {
+                                   across.push_back(other);
+                                   return;
+                                 }
+                                 add(own, other);
+                                 add(other, own);
+                               });
+    const Vec3d reach(2 * input.radius);
+    for (const Touchable& a : across) {
+      const auto& [p0, p1, p2, region, index] = *a.triangle;
+      const auto look = [&](const SurfaceTriangle& t) {
+        const Touchable b{&t, normal_of(t.region)};
+        if (!are_around(own, a, b)) return;
+        for (const Touchable& side : {own, a, b}) add(side, side);
+      };
+      input.surface.for_each_near(min(p0, min(p1, p2)) - reach, max(p0, max(p1, p2)) + reach, look);
+    }
   };
   ThinWalls walls;
   const Blades blades(input);
@@ -342,27 +388,46 @@ ThinWalls find_thin_walls(const ThinWallInput& input) {
   std::vector<FacePair> opposite;
   for (const auto& [triangle, faces] :
        parallel_collect<Side>(triangles.size(), kSidesAtOnce, find)) {
-    walls.sides.push_back(triangle);
-    if (faces.first != faces.second) opposite.push_back(faces);
+    const bool is_of_rod = faces.first == faces.second;
+    (is_of_rod ? walls.rods : walls.sides).push_back(triangle);
+    if (!is_of_rod) opposite.push_back(faces);
   }
   sort_and_unite(walls.sides);
+  sort_and_unite(walls.rods);
   sort_and_unite(opposite);
   for (const FacePair& pair : opposite) {
     if (blades.hold(pair)) walls.blades.push_back(pair);
   }
   sort_and_unite(walls.blades);
-  walls.needles = find_needles(input, walls.sides);
+  walls.needles = find_needles(input, walls.rods);
   return walls;
 }
 
 bool is_between_walls(const SolidSurface& surface, Vec3d center, double radius) {
-  const Vec3d reach(radius);
-  std::vector<Vec3d> normals;
-  surface.for_each_wall_near(center - reach, center + reach, [&](const SurfaceTriangle& t) {
+  const Vec3d low = center - Vec3d(radius), high = center + Vec3d(radius);
+  std::vector<Touchable> near;
+  const auto add = [&](const SurfaceTriangle& t) {
     if (is_plainly_beyond(center, t, radius)) return;
-    if (length(nearest_on_triangle(center, t) - center) < radius) normals.push_back(normal_of(t));
-  });
-  return are_around(normals);
+    if (std::ranges::count(near, &t, &Touchable::triangle) > 0) return;
+    if (length(nearest_on_triangle(center, t) - center) < radius)
+      near.push_back({&t, normal_of(t)});
+  };
+  surface.for_each_wall_near(low, high, add);
+  for (const Touchable& a : near) {
+    for (const Touchable* b = near.data(); b != &a; ++b) {
+      if (dot(a.normal, b->normal) < kOpposite) return true;
+    }
+  }
+  near.clear();
+  surface.for_each_rod_near(low, high, add);
+  for (const Touchable& a : near) {
+    for (const Touchable* b = near.data(); b != &a; ++b) {
+      if (!(dot(a.normal, b->normal) < kApart) || !face_each_other(a, *b)) continue;
+      const auto closes = [&](const Touchable& c) { return are_around(a, *b, c); };
+      if (std::ranges::any_of(near, closes)) return true;
+    }
+  }
+  return false;
 }
 
 bool gets_stuck(const SolidSurface& surface, Vec3d x, Vec3d normal, std::uint32_t face,
