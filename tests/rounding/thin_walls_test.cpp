@@ -307,5 +307,33 @@ TEST(ThinWalls, needles_are_rounded) {
   }
 }
 
+// A wedge one side of which is curved, in facets: the first two meet the other side at 36 and 48 degrees, so that the one
+// is opposite to it and the other isn't, and the first lies more than two radii from the crease.
+TEST(ThinWalls, facets_at_the_tip_of_a_wedge_are_rounded_away) {
+  Outline side{{0, 0}};
+  for (const auto& [way, slope] :
+       {std::pair(0.05, 36.0), {1.0, 48.0}, {1.0, 60.0}, {1.0, 72.0}, {1.0, 84.0}}) {
+    const auto [x, y] = side.back();
+    side.emplace_back(x + way * std::cos(radians(slope)), y + way * std::sin(radians(slope)));
+  }
+  Outline outline{{8, 0}, {8, 5}, {side.back().first, 5}};
+  outline.insert(outline.end(), side.rbegin(), side.rend());
+  const TriangleSoup mesh = prism_over("wedge", outline, {8, 1, 0});
+  const double middle = 0.5 * (mesh.positions.front().z + mesh.positions.back().z);
+  for (const double radius : {0.1, 0.2, 0.35}) {
+    const Rounding rounding = round(mesh, radius);
+    ASSERT_EQ(rounding.data().creased.size(), 1U);
+    EXPECT_TRUE(rounding.report().clamped.empty()) << radius;
+    // The centre of the ball that touches both sides is 2.2 radii from the tip or farther.
+    for (int i = 0; i < 100; ++i) {
+      const Vec3d x(1.1 * radius * (i + 0.5) / 100, 0, middle);
+      for (const double way : {-1.0, 1.0}) {
+        const Ray ray{x - Vec3d(0, 10 * way, 0.1), {0, way, 0}};
+        EXPECT_FALSE(trace(ray, {mesh.view(), &rounding})) << radius << " " << x.x;
+      }
+    }
+  }
+}
+
 }  // namespace
 }  // namespace arris::oracle
