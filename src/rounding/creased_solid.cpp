@@ -9,6 +9,7 @@
 #include "base/frame.h"
 #include "base/parallel_for.h"
 #include "rounding/crease_grooves.h"
+#include "rounding/growing_ball.h"
 #include "rounding/stretches.h"
 #include "rounding/thin_walls.h"
 

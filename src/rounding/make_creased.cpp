@@ -6,6 +6,7 @@
 
 #include "base/parallel_collect.h"
 #include "rounding/creases.h"
+#include "rounding/growing_ball.h"
 #include "rounding/near_triangles.h"
 #include "rounding/smooth_reach.h"
 #include "rounding/thin_walls.h"

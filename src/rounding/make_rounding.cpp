@@ -172,7 +172,7 @@ class RoundingMaker {
     solid.exact = convex && solid.closed && all_rounded;
   }
 
-  // Of each shell, empty ones of hollows that stay sharp. Builders have room for the whole mesh: a few do for all shells.
+  // Of each shell, empty ones of hollows that stay sharp. Builders have room for the whole mesh: a few do for all.
   [[nodiscard]] std::vector<ShellNetwork> build_networks() {
     constexpr std::size_t kMostParts = 16;
     // A mesh of bevels has each edge of its own.

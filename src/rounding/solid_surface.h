@@ -23,6 +23,9 @@ struct SurfaceTriangle {
 };
 
 // C. Ericson, "Real-Time Collision Detection" (2005), §5.1.5.
+inline Vec3d normal_of(const SurfaceTriangle& t) {
+  return normalize(cross(t.p1 - t.p0, t.p2 - t.p0));
+}
 inline Vec3d nearest_on_triangle(Vec3d x, const SurfaceTriangle& t) {
   const Vec3d ab = t.p1 - t.p0, ac = t.p2 - t.p0, ax = x - t.p0;
   const double d1 = dot(ab, ax), d2 = dot(ac, ax);

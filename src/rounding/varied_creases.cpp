@@ -11,7 +11,7 @@
 #include <utility>
 
 #include "base/parallel_collect.h"
-#include "rounding/thin_walls.h"
+#include "rounding/growing_ball.h"
 
 namespace arris {
 namespace {

@@ -1,5 +1,5 @@
 // thin_walls_test.cpp — where a growing ball gets stuck, and what rounding leaves of solids with walls too thin for it
-#include "rounding/thin_walls.h"
+#include "rounding/growing_ball.h"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -307,8 +307,8 @@ TEST(ThinWalls, needles_are_rounded) {
   }
 }
 
-// A wedge one side of which is curved, in facets: the first two meet the other side at 36 and 48 degrees, so that the one
-// is opposite to it and the other isn't, and the first lies more than two radii from the crease.
+// A wedge one side of which is curved, in facets: the first two meet the other side at 36 and 48 degrees, so that the
+// one is opposite to it and the other isn't, and the first lies more than two radii from the crease.
 TEST(ThinWalls, facets_at_the_tip_of_a_wedge_are_rounded_away) {
   Outline side{{0, 0}};
   for (const auto& [way, slope] :
