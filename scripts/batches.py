@@ -24,7 +24,7 @@ WORD = re.compile(r"[A-Za-z_]\w*")
 TYPE = re.compile(r"(?:struct|class|union|enum(?: class)?)\s+(\w+)")
 MACRO = re.compile(r"#\s*define\s+(\w+)|MATCHER\w*\((\w+)")
 OTHER = re.compile(r"[^\s#})].*?(?<![\w:])([A-Za-z_]\w*)\s*(?:[({=;\[]|$)|([A-Za-z_]\w*)\(")
-MEMBER = re.compile(r".*\w::~?(?:\w+|operator\W+)\(|.*\) (?:const|noexcept)\b")
+MEMBER = re.compile(r"[^=]*\w::~?(?:\w+|operator\W+)\(|.*\) (?:const|noexcept)\b")
 SKIPPED = re.compile(r"\s|namespace\b|template\b|using [\w:]+;|using namespace|[A-Z]+_?[A-Z_]*\(|$")
 CONSTANT = re.compile(r"k[A-Z]")
 

@@ -29,7 +29,7 @@ constexpr double kSameGroove = 0.01;
 constexpr std::size_t kStretchesAtOnce = 4;
 
 // A place of a pipe: along it, and across from a to b.
-struct PipePlace {
+struct GroovePlace {
   double u, v;
 };
 
@@ -72,16 +72,16 @@ class GrooveFinder {
     Vec3d center, other_center;
   };
 
-  [[nodiscard]] Vec3d normal_at(const CreasePipe& pipe, PipePlace p) const {
+  [[nodiscard]] Vec3d normal_at(const CreasePipe& pipe, GroovePlace p) const {
     const auto& [a, b] = pipe.wedge_at(p.u);
     const double angle = std::acos(std::clamp(dot(a, b), -1.0, 1.0)), sine = std::sin(angle);
     if (!(sine > 1e-9)) return a;
     return a * (std::sin((1 - p.v) * angle) / sine) + b * (std::sin(p.v * angle) / sine);
   }
-  [[nodiscard]] Vec3d point_at(const CreasePipe& pipe, PipePlace p) const {
+  [[nodiscard]] Vec3d point_at(const CreasePipe& pipe, GroovePlace p) const {
     return pipe.curve.at(p.u) + normal_at(pipe, p) * pipe.curve.radius_at(p.u);
   }
-  [[nodiscard]] bool is_covered(const CreasePipe& pipe, PipePlace p) const {
+  [[nodiscard]] bool is_covered(const CreasePipe& pipe, GroovePlace p) const {
     return solid_.is_beneath(point_at(pipe, p));
   }
 
@@ -123,15 +123,15 @@ class GrooveFinder {
     const std::vector<double> us = places_along(stretch);
     const auto place = [&](std::size_t i, int k) {
       // Grooves run into concave edges at a small angle.
-      return PipePlace{us[i], 0.5 - 0.5 * std::cos(kPi * k / kAcross)};
+      return GroovePlace{us[i], 0.5 - 0.5 * std::cos(kPi * k / kAcross)};
     };
     std::vector<bool> before, now;
     for (std::size_t i = 0; i < us.size(); ++i) {
       now.clear();
       for (int k = 0; k <= kAcross; ++k) now.push_back(is_covered(pipe, place(i, k)));
       for (int k = 0; i > 0 && k < kAcross; ++k) {
-        const std::array<PipePlace, 4> corners{place(i - 1, k), place(i, k), place(i, k + 1),
-                                               place(i - 1, k + 1)};
+        const std::array<GroovePlace, 4> corners{place(i - 1, k), place(i, k), place(i, k + 1),
+                                                 place(i - 1, k + 1)};
         const auto at = std::size_t(k);
         add_cell(pipe, corners, {before[at], now[at], now[at + 1], before[at + 1]}, found);
       }
@@ -155,7 +155,7 @@ class GrooveFinder {
     return us;
   }
 
-  void add_cell(const CreasePipe& pipe, const std::array<PipePlace, 4>& corners,
+  void add_cell(const CreasePipe& pipe, const std::array<GroovePlace, 4>& corners,
                 const std::array<bool, 4>& covered, std::vector<Found>& found) const {
     std::vector<Border> crossings;
     for (std::size_t i = 0; i < 4; ++i) {
@@ -169,10 +169,10 @@ class GrooveFinder {
     }
   }
 
-  [[nodiscard]] Border find_border(const CreasePipe& pipe, PipePlace bare,
-                                   PipePlace covered) const {
+  [[nodiscard]] Border find_border(const CreasePipe& pipe, GroovePlace bare,
+                                   GroovePlace covered) const {
     for (int i = 0; i < 20; ++i) {
-      const PipePlace middle{0.5 * (bare.u + covered.u), 0.5 * (bare.v + covered.v)};
+      const GroovePlace middle{0.5 * (bare.u + covered.u), 0.5 * (bare.v + covered.v)};
       (is_covered(pipe, middle) ? covered : bare) = middle;
     }
     const Vec3d x = point_at(pipe, covered);
