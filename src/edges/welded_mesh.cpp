@@ -117,6 +117,15 @@ bool is_degenerate(const Triangle& t) {
   return t[0] == t[1] || t[1] == t[2] || t[2] == t[0];
 }
 
+// Whether the corners lie in one line: no other triangle's side is told from it by an angle.
+bool has_no_area(const Triangle& t, std::span<const Vec3f> vertices) {
+  constexpr double kFlat = 1e-9;  // height, of the longest side
+  const Vec3d a(vertices[t[0]]), b(vertices[t[1]]), c(vertices[t[2]]);
+  const double longest =
+      std::max({length_squared(b - a), length_squared(c - b), length_squared(a - c)});
+  return !(length(cross(b - a, c - a)) > kFlat * longest);
+}
+
 // Unit vector from the edge into the triangle of half-edge h, perpendicular to the edge.
 Vec3d direction_into_face(const WeldedMesh& mesh, std::uint32_t h, Vec3d edge) {
   const Vec3d a(mesh.vertices[mesh.origin(h)]);
@@ -351,8 +360,11 @@ WeldedMesh make_welded_mesh(const MeshView& mesh, const std::string& name) {
   const std::vector<std::uint32_t> vertex_of = weld_positions(mesh.positions, welded.vertices);
   welded.triangles.reserve(mesh.triangles.size());
   for (const Triangle& t : mesh.triangles) {
-    welded.triangles.push_back({vertex_of[t[0]], vertex_of[t[1]], vertex_of[t[2]]});
-    welded.degenerate_triangles += is_degenerate(welded.triangles.back()) ? 1 : 0;
+    Triangle& corners =
+        welded.triangles.emplace_back(Triangle{vertex_of[t[0]], vertex_of[t[1]], vertex_of[t[2]]});
+    if (!has_no_area(corners, welded.vertices)) continue;
+    corners = {corners[0], corners[0], corners[0]};
+    ++welded.degenerate_triangles;
   }
   welded.edge_radii = weld_radii(mesh.edge_radii, vertex_of);
   welded.source.resize(welded.vertices.size());

@@ -47,10 +47,10 @@ struct WeldedMesh {
   std::vector<Vec3f> vertices;
   std::vector<Triangle> triangles;   // the caller's, then pieces of split ones
   std::vector<std::uint32_t> twin;   // per half-edge
-  std::vector<std::uint32_t> shell;  // per triangle; kNone where two corners coincide
+  std::vector<std::uint32_t> shell;  // per triangle; kNone where it has no area
   std::vector<Shell> shells;
   std::vector<std::uint32_t> triangles_by_shell;  // triangle indices, shell after shell
-  std::uint64_t degenerate_triangles = 0;         // with two corners in one place
+  std::uint64_t degenerate_triangles = 0;         // whose corners lie in one line
   std::uint64_t healed_junctions = 0;             // vertices on open edges of other triangles
   // Those of MeshView, sorted, the smaller vertex first. Pieces of split triangles have none.
   std::optional<std::vector<VertexPair>> sharp_edges;

@@ -44,7 +44,7 @@ bool are_opposite(const Contact& a, const Contact& b) {
 // procedure for computing the distance between complex objects" (1988).
 Vec3d nearest_of_hull(const std::vector<Vec3d>& directions) {
   constexpr int kRounds = 64;
-  constexpr double kNear = 1e-9;
+  constexpr double kNear = 1e-9, kSurely = 1e-6;  // the places of slivers are inexact
   std::array<Vec3d, 4> simplex{directions.front()};
   std::size_t count = 1;
   Vec3d nearest = simplex[0];
@@ -70,7 +70,7 @@ Vec3d nearest_of_hull(const std::vector<Vec3d>& directions) {
     take(b, c, d);
     count = 3;
     const auto is_beyond = [&](Vec3d p) {
-      return dot(p, nearest) < (1 - kNear) * length_squared(nearest);
+      return dot(p, nearest) < (1 - kSurely) * length_squared(nearest);
     };
     if (is_beyond(a) || is_beyond(b) || is_beyond(c) || is_beyond(d)) return {};  // it is within
   }
@@ -155,9 +155,11 @@ class GrowingBall {
     return way;
   }
 
-  // Facets that are touched where they meet, as far as touching is told, are one.
+  // Facets that are touched where they meet, as far as touching is told, are one. Sides of a needle are no less of one
+  // where they don't meet in an edge.
   [[nodiscard]] bool are_of_blade(const Contact& a, const Contact& b) const {
-    if (surface_.is_blade(a.triangle->region, b.triangle->region)) return true;
+    const std::array<std::uint32_t, 2> faces{a.triangle->region, b.triangle->region};
+    if (surface_.is_blade(faces[0], faces[1]) || surface_.is_needle(faces)) return true;
     const auto is_at = [&](const Contact& c, const Contact& other) {
       return dot(c.direction, other.direction) > 1 - 2 * touching_;
     };

@@ -79,7 +79,7 @@ struct ThinWalls {
   // Faces that meet in an edge as sharp as that, or whose surfaces do: balls may roll out of there. Each pair in both
   // orders; sorted.
   std::vector<FacePair> blades;
-  // Of corners as sharp as that, all of whose faces are sides of rods: these, and a number for each corner; sorted.
+  // Of corners as sharp as that, all of whose faces are sides: these, and a number for each corner; sorted.
   std::vector<std::pair<std::uint32_t, std::uint32_t>> needles;
 };
 

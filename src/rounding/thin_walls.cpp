@@ -88,7 +88,7 @@ class Blades {
       beyond_;  // faces that the first's surface meets in sharp edges
 };
 
-// Corners of sides of rods; all triangles of one have it at the same place.
+// Corners of sides; all triangles of one have it at the same place.
 std::vector<std::pair<std::uint32_t, std::uint32_t>> find_needles(
     const ThinWallInput& input, std::span<const std::uint32_t> sides) {
   struct Corner {
@@ -181,7 +181,10 @@ ThinWalls find_thin_walls(const ThinWallInput& input) {
     if (blades.hold(pair)) walls.blades.push_back(pair);
   }
   sort_and_unite(walls.blades);
-  walls.needles = find_needles(input, walls.rods);
+  std::vector<std::uint32_t> all = walls.sides;
+  all.insert(all.end(), walls.rods.begin(), walls.rods.end());
+  sort_and_unite(all);
+  walls.needles = find_needles(input, all);
   return walls;
 }
 

@@ -124,6 +124,33 @@ TEST(WeldedMesh, leaves_out_triangles_with_two_corners_in_one_place) {
   EXPECT_TRUE(welded.shells[0].closed);
 }
 
+// Their sides are told from no others by an angle: they are left out, and what they lay between meets.
+TEST(WeldedMesh, leaves_out_triangles_whose_corners_lie_in_one_line) {
+  Mesh mesh = make_box_mesh({1, 1, 1});
+  const auto middle = std::uint32_t(mesh.positions.size());
+  const Triangle first = mesh.triangles[0];
+  mesh.positions.push_back((mesh.positions[first[0]] + mesh.positions[first[1]]) * 0.5F);
+  for (const bool is_twice : {true, false}) {
+    Mesh more = mesh;
+    more.triangles.push_back({first[0], middle, first[1]});
+    if (is_twice) more.triangles.push_back({first[0], first[1], middle});
+    const WeldedMesh welded = weld(more);
+    EXPECT_EQ(welded.degenerate_triangles, is_twice ? 2U : 1U);
+    ASSERT_EQ(welded.shells.size(), 1U);
+    EXPECT_TRUE(welded.shells[0].closed);
+    EXPECT_TRUE(twins_agree(welded));
+  }
+  // One that lies between a whole side and a side in two parts.
+  Mesh cut = mesh;
+  cut.triangles[0] = {first[0], middle, first[2]};
+  cut.triangles.push_back({middle, first[1], first[2]});
+  cut.triangles.push_back({first[0], first[1], middle});
+  const WeldedMesh welded = weld(cut);
+  EXPECT_EQ(welded.healed_junctions, 1U);
+  ASSERT_EQ(welded.shells.size(), 1U);
+  EXPECT_TRUE(welded.shells[0].closed);
+}
+
 TEST(WeldedMesh, says_which_index_is_out_of_range) {
   Mesh mesh = make_box_mesh({1, 1, 1});
   mesh.triangles[7][1] = 99;
