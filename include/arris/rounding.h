@@ -12,8 +12,8 @@
 // Limits     solids that aren't exact are rounded locally along convex edges, and keep their concave ones sharp. A ray
 //            that passes one of these and next leaves it by a kept face went through material: let the first hit
 //            stand, unless what it passed is Feature::fillet.
-// Cost       building is close to linear in the triangles; a kept hit costs a few multiplications. Where the radius has
-//            eaten edges of a solid, a moved hit costs linear in those left.
+// Cost       building is linear in the pairs of triangles within two radii; a kept hit costs a few multiplications.
+//            Where the radius has eaten edges of a convex solid, a moved hit costs linear in those left.
 // Source     Courtin, Horna, Ribardière, Poulin, Meneveaux, "Efficient Rendering of Rounded Corners and
 //            Edges for Convex Objects"; where this differs is said in src/rounding/.
 #pragma once

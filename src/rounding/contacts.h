@@ -1,5 +1,6 @@
 // contacts.h — where a ball within a solid touches its surface, and which directions lie between these places
 // In / Out   coordinates relative to the solid's centre; directions are unit, from the ball's centre
+// Limits     twelve faces; those that are found later are left out
 // Cost       a search of the surface
 #pragma once
 

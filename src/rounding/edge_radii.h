@@ -11,7 +11,7 @@
 
 namespace arris {
 
-// Per half-edge, of those to be rounded; empty if all have the options' radius.
+// Per half-edge, of those to be rounded, else the options'; empty if all have the options' radius.
 std::vector<double> find_edge_radii(const MeshView& mesh, const WeldedMesh& welded,
                                     const FlatRegions& regions, std::span<const EdgeKind> kinds,
                                     const RoundingOptions& options);

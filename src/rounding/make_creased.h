@@ -36,7 +36,8 @@ struct MadeCreased {
   std::vector<PlainCrease> plain;
 };
 
-// shells: the outside of one solid, then its hollows. Nothing: something about them is open, no edge has room, or
+// shells: the outside of one solid, then its hollows. center: about which planes and places are, where it isn't that of
+// the first, as for fillets of a hollow. Nothing: something about them is open, no edge has room, or
 // facets of a curved surface are too fine for the radius.
 std::optional<MadeCreased> make_creased_solid(const CreasedInput& input,
                                               std::span<const std::uint32_t> shells,

@@ -221,6 +221,7 @@ class RoundingMaker {
       // What the network leaves sharp is rounded all the same. It tells outlines where to look.
       data_->report.rounded_edges += network.shortened_edges + network.narrow_edges;
     } else {
+      local_ += solid.closed && !solid.convex && network.rounded_edges > 0 ? 1 : 0;
       shortened_ += network.shortened_edges;
       narrow_ += network.narrow_edges;
       for (const std::uint32_t h : network.left_sharp) add_clamped({h, 0});
@@ -476,14 +477,13 @@ class RoundingMaker {
   void finish_report() {
     RoundingReport& report = data_->report;
     report.solids = data_->solids.size();
-    std::uint64_t open = 0, other = 0;
+    std::uint64_t open = 0;
     report.rounded_edges -= std::min(report.rounded_edges, left_in_creased_);
     for (const Solid& solid : data_->solids) {
       report.convex_solids += solid.convex && solid.closed ? 1 : 0;
       const bool creased = solid.creased != kNone;
       report.exact_solids += solid.exact || creased ? 1 : 0;
       open += solid.closed ? 0 : 1;
-      other += solid.closed && !solid.convex && !creased ? 1 : 0;
     }
     report.open_solids = open;
     report.bytes = bytes();
@@ -491,7 +491,7 @@ class RoundingMaker {
       if (count > 0) report.notes.push_back({count, one, many});
     };
     if (options_.edges != RoundEdges::concave) {
-      note(other - cavities_, "solid is not convex: rounded locally along its convex edges",
+      note(local_, "solid is not convex: rounded locally along its convex edges",
            "solids are not convex: rounded locally along their convex edges");
       note(open, "shell is not closed: rounded where it is locally a solid",
            "shells are not closed: rounded where they are locally a solid");
@@ -554,7 +554,8 @@ class RoundingMaker {
   std::vector<std::uint32_t> walls_;
   bool keep_networks_ = false;
   std::vector<ShellNetwork> networks_;
-  std::uint64_t cavities_ = 0, shortened_ = 0, narrow_ = 0, too_small_ = 0, unasked_ = 0;
+  std::uint64_t local_ = 0, cavities_ = 0, shortened_ = 0, narrow_ = 0, too_small_ = 0,
+                unasked_ = 0;
   std::uint64_t filled_edges_ = 0, left_in_creased_ = 0, sharp_in_part_ = 0;
   std::uint64_t clamped_ = 0, sharp_by_rule_ = 0, concave_by_rule_ = 0, rules_ignored_ = 0;
 };

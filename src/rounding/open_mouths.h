@@ -3,6 +3,7 @@
 //            planes of these meet. If the mesh ends before, this is the groove's mouth, and no crease is known between
 //            its lips: filled, it would be a bar with one side. It stays open, as gaps do (thin_walls.h).
 // In / Out   coordinates relative to the solid's centre; the solid is the space outside
+// Limits     what lies within some five radii behind the balls is taken for the groove's end: then the mouth is filled
 // Cost       to find them: some rays for each crease, on all cores; to ask: a search of those near
 // Legend     c point of a crease, r radius, a and b directions from there to where the ball touches; the mouth is
 //            c + v, |v| ≥ r, v between a and b, no farther than where the planes meet
