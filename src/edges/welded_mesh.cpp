@@ -1,6 +1,7 @@
 #include "edges/welded_mesh.h"
 
 #include <algorithm>
+#include <cmath>
 #include <bit>
 #include <limits>
 
@@ -155,7 +156,9 @@ void pair_around_edge(WeldedMesh& mesh, std::span<const std::uint32_t> half_edge
     along_count += along ? 1 : 0;
     spokes.push_back({std::atan2(dot(d, axis_y), dot(d, axis_x)), along, h});
   }
-  if (along_count * 2 != half_edges.size()) {
+  const bool has_angles =
+      std::ranges::none_of(spokes, [](const Spoke& s) { return std::isnan(s.angle); });
+  if (along_count * 2 != half_edges.size() || !has_angles) {
     for (const std::uint32_t h : half_edges) mesh.twin[h] = kNonManifold;
     return;
   }

@@ -50,7 +50,13 @@ class CreasedMaker {
         r_ = std::max(r_, in.radii[h]);
       }
     }
-    if (!has_own_radii_) r_ = in.radius;
+    if (!has_own_radii_) {
+      r_ = in.radius;
+    } else if (r_ > outer_.size()) {
+      // Such edges get what fits; the others don't mind.
+      r_ = outer_.size();
+      for (const double radius : in.radii) lowered_.push_back(std::min(radius, r_));
+    }
   }
 
   // Closed, and there is a face on both sides of every edge.
@@ -103,7 +109,10 @@ class CreasedMaker {
     const CreaseInput input{in_.welded, in_.regions, in_.kinds,     shells_,
                             surface,    center_,     outer_.size(), r_};
     const bool clamp = in_.on_overlap == OnOverlap::clamp;
-    if (has_own_radii_) return find_varied_creases({input, in_.radii, clamp});
+    if (has_own_radii_) {
+      const std::span<const double> radii = lowered_.empty() ? in_.radii : lowered_;
+      return find_varied_creases({input, radii, clamp});
+    }
     FoundCreases found = find_creases(input);
     if (clamp && !found.missing.empty()) {
       const std::vector<double> radii(in_.kinds.size(), r_);
@@ -336,6 +345,7 @@ class CreasedMaker {
   Vec3d center_;
   double r_;  // the largest of its edges
   bool has_own_radii_ = false;
+  std::vector<double> lowered_;           // the input's radii, where one is larger than the solid
   std::vector<std::uint32_t> triangles_;  // of the mesh
   bool has_smooth_edges_ = false;
 };

@@ -177,6 +177,29 @@ TEST(VariedFillets, edges_without_room_get_a_smaller_radius) {
   EXPECT_GT(tally.fillets, 20);
 }
 
+// A radius larger than the solid costs the other edges nothing.
+TEST(VariedFillets, edges_with_far_too_large_radii_get_what_fits) {
+  const TriangleSoup mesh = plate_with_slot(0.8);
+  RoundingOptions options;
+  options.radius = 0.1;
+  options.edges = RoundEdges::concave;
+  EdgeRule rule;
+  rule.radius = 1e6;
+  rule.segments = {{Vec3d(-1, -1, -0.6), Vec3d(-1, -1, 0)}};
+  options.rules = {rule};
+  const Rounding rounding = make_rounding(mesh.view(), options, "plate");
+  ASSERT_EQ(rounding.data().filled.size(), 1U);
+  ASSERT_EQ(rounding.report().clamped.size(), 1U);
+  EXPECT_GE(rounding.report().clamped[0].radius, 0.1);
+  // Another upright edge of the pocket: at its middle the surface is (√2 − 1) r from where it was.
+  const Vec3d inward = normalize(Vec3d(1, 1, 0));
+  const auto hit =
+      trace({Vec3d(0, 0, -0.2), inward * -1 + Vec3d(0, 2, 0) * inward.y}, {mesh.view(), &rounding});
+  ASSERT_TRUE(hit);
+  EXPECT_EQ(hit->feature, Feature::fillet);
+  EXPECT_NEAR(hit->t, std::sqrt(2.0) - 0.1 * (std::sqrt(2.0) - 1), 1e-5);
+}
+
 TEST(VariedFillets, rules_may_be_for_one_kind_of_edges) {
   const TriangleSoup l =
       prism_over("L", {{0, 0}, {2, 0}, {2, 0.8}, {0.8, 0.8}, {0.8, 2}, {0, 2}}, {});
