@@ -1,8 +1,8 @@
 #include "edges/welded_mesh.h"
 
 #include <algorithm>
-#include <cmath>
 #include <bit>
+#include <cmath>
 #include <limits>
 
 #include "arris/error.h"
