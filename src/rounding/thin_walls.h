@@ -3,7 +3,8 @@
 //            tells at once of most places that it can: no sides of walls or rods are near.
 //            Of the space outside, from which fillets are made, the same is true of air: gaps stay.
 // In / Out   coordinates relative to the solid's centre
-// Cost       find_thin_walls: linear in the pairs of triangles within 2 r of each other, on all cores;
+// Cost       find_thin_walls: linear in the pairs of triangles within 2 r of each other, where they turn by more than
+//            100 degrees in the triples, on all cores;
 //            is_between_walls: a search of their sides
 #pragma once
 
