@@ -184,9 +184,9 @@ class GrowingBall {
       }
     }
     if (!in_blade && speed < kAround && are_around(directions_)) {
-      faces_.clear();
-      for (const Contact& c : contacts_) faces_.push_back(c.triangle->region);
-      in_blade = surface_.is_needle(faces_);
+      std::vector<std::uint32_t> faces;
+      for (const Contact& c : contacts_) faces.push_back(c.triangle->region);
+      in_blade = surface_.is_needle(faces);
       if (!in_blade) return true;
     }
     return speed < (in_blade ? kStuckInBlade : kStuck);
@@ -197,8 +197,7 @@ class GrowingBall {
   Vec3d middle_;  // of the directions to what it touches
   double full_, radius_ = 0, far_ = 0, touching_ = 0;
   std::vector<Contact> near_, contacts_;
-  std::vector<Vec3d> directions_;             // of contacts, without those on planes of others
-  mutable std::vector<std::uint32_t> faces_;  // of contacts
+  std::vector<Vec3d> directions_;  // of contacts, without those on planes of others
 };
 
 }  // namespace

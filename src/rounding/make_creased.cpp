@@ -73,7 +73,7 @@ class CreasedMaker {
   }
 
   [[nodiscard]] std::optional<MadeCreased> make() const {
-    // Such balls fit nowhere, or no edge has a radius.
+    // Such balls fit nowhere in the solid, and their fillets would be larger than it; or no edge has a radius.
     if (r_ > outer_.size() || r_ == 0) return std::nullopt;
     SolidSurface surface = make_surface();
     if (has_smooth_edges_ && is_too_fine(surface)) return std::nullopt;

@@ -11,13 +11,6 @@ namespace {
 constexpr double kMostTurn = -0.5;
 constexpr std::size_t kFacesAtOnce = 64;
 
-// Of sorted pairs, those whose first is the face.
-std::span<const FacePair> pairs_of(std::span<const FacePair> sorted, std::uint32_t face) {
-  const auto first = std::ranges::lower_bound(sorted, face, {}, &FacePair::first);
-  const auto last = std::ranges::upper_bound(sorted, face, {}, &FacePair::first);
-  return {first, last};
-}
-
 class ReachFinder {
  public:
   explicit ReachFinder(const SmoothReachInput& input) : in_(input) {

@@ -22,10 +22,10 @@ struct SurfaceTriangle {
   std::uint32_t index = 0;  // of the mesh
 };
 
-// C. Ericson, "Real-Time Collision Detection" (2005), §5.1.5.
 inline Vec3d normal_of(const SurfaceTriangle& t) {
   return normalize(cross(t.p1 - t.p0, t.p2 - t.p0));
 }
+// C. Ericson, "Real-Time Collision Detection" (2005), §5.1.5.
 inline Vec3d nearest_on_triangle(Vec3d x, const SurfaceTriangle& t) {
   const Vec3d ab = t.p1 - t.p0, ac = t.p2 - t.p0, ax = x - t.p0;
   const double d1 = dot(ab, ax), d2 = dot(ac, ax);
@@ -72,6 +72,12 @@ bool may_be_cut(const std::array<Vec3d, 3>& centers, Vec3d normal, const Surface
                 double radius);
 
 using FacePair = std::pair<std::uint32_t, std::uint32_t>;  // regions
+
+// Of sorted pairs, those whose first is the face.
+inline std::span<const FacePair> pairs_of(std::span<const FacePair> sorted, std::uint32_t face) {
+  return {std::ranges::lower_bound(sorted, face, {}, &FacePair::first),
+          std::ranges::upper_bound(sorted, face, {}, &FacePair::first)};
+}
 
 // What has less than two radii of material between its sides.
 struct ThinWalls {

@@ -65,10 +65,6 @@ class Blades {
  private:
   static constexpr int kSteps = 3;  // over smooth edges
 
-  static std::span<const FacePair> pairs_of(std::span<const FacePair> sorted, std::uint32_t face) {
-    return {std::ranges::lower_bound(sorted, face, {}, &FacePair::first),
-            std::ranges::upper_bound(sorted, face, {}, &FacePair::first)};
-  }
   // The face and those of its surface some steps from it.
   [[nodiscard]] std::vector<std::uint32_t> around(std::uint32_t face) const {
     std::vector<std::uint32_t> faces{face};
@@ -84,8 +80,7 @@ class Blades {
 
   const ThinWallInput& in_;
   std::uint32_t first_ = kNone;
-  mutable std::vector<std::uint32_t>
-      beyond_;  // faces that the first's surface meets in sharp edges
+  std::vector<std::uint32_t> beyond_;  // faces that the first's surface meets in sharp edges
 };
 
 // Corners of sides; all triangles of one have it at the same place.
@@ -144,7 +139,7 @@ ThinWalls find_thin_walls(const ThinWallInput& input) {
                                [&](const SurfaceTriangle& t) {
                                  const Touchable other{&t, normal_of(t.region)};
                                  if (dot(own.normal, other.normal) > kOpposite) {
-                                   across.push_back(other);
+                                   if (face_each_other(own, other)) across.push_back(other);
                                    return;
                                  }
                                  add(own, other);
