@@ -338,8 +338,7 @@ TEST(Fillets, mouths_of_undercut_grooves_stay_open) {
 
 // Whatever way they go, and also where they come to the mesh within the material.
 TEST(Fillets, rays_that_start_deep_in_one_leave_the_material) {
-  const TriangleSoup mesh =
-      prism_over("L", {{0, 0}, {2, 0}, {2, 0.8}, {0.8, 0.8}, {0.8, 2}, {0, 2}}, {});
+  const TriangleSoup mesh = plain_l();
   RoundingOptions options;
   options.radius = 0.15;
   options.edges = RoundEdges::concave;

@@ -201,8 +201,7 @@ TEST(VariedFillets, edges_with_far_too_large_radii_get_what_fits) {
 }
 
 TEST(VariedFillets, rules_may_be_for_one_kind_of_edges) {
-  const TriangleSoup l =
-      prism_over("L", {{0, 0}, {2, 0}, {2, 0.8}, {0.8, 0.8}, {0.8, 2}, {0, 2}}, {});
+  const TriangleSoup l = plain_l();
   RoundingOptions options;
   options.radius = 0.2;
   options.edges = RoundEdges::both;

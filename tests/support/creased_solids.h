@@ -46,6 +46,10 @@ inline TriangleSoup plate_with_slot(double width) {
   });
 }
 
+inline TriangleSoup plain_l() {
+  return prism_over("L", {{0, 0}, {2, 0}, {2, 0.8}, {0.8, 0.8}, {0.8, 2}, {0, 2}}, {});
+}
+
 struct CreasedCase {
   TriangleSoup mesh;
   double radius;
