@@ -15,16 +15,10 @@ CreaseCurve line(Vec3d point, Vec3d direction, double extent) {
   return {point, direction, {}, true, -extent, extent};
 }
 
-CreaseCurve circle(Vec3d center, Vec3d normal, double radius) {
-  const Vec3d any = std::abs(normal.x) < 0.6 ? Vec3d(1, 0, 0) : Vec3d(0, 1, 0);
-  const Vec3d a = normalize(cross(normal, any));
-  return {center, a * radius, cross(normal, a) * radius, false, 0, 2 * kPi};
-}
-
 // The ellipse in which a plane through a point of a cylinder's axis cuts it.
 CreaseCurve cut_cylinder(Vec3d center, Vec3d axis, Vec3d normal, double radius) {
   const Vec3d across = cross(axis, normal);
-  if (!(length(across) > kParallel)) return circle(center, normal, radius);
+  if (!(length(across) > kParallel)) return crease_circle(center, normal, radius);
   const Vec3d minor = normalize(across);
   const Vec3d major = cross(normal, minor);
   return {center, minor * radius, major * (radius / std::abs(dot(axis, normal))), false,
@@ -32,6 +26,12 @@ CreaseCurve cut_cylinder(Vec3d center, Vec3d axis, Vec3d normal, double radius) 
 }
 
 }  // namespace
+
+CreaseCurve crease_circle(Vec3d center, Vec3d normal, double radius) {
+  const Vec3d any = std::abs(normal.x) < 0.6 ? Vec3d(1, 0, 0) : Vec3d(0, 1, 0);
+  const Vec3d a = normalize(cross(normal, any));
+  return {center, a * radius, cross(normal, a) * radius, false, 0, 2 * kPi};
+}
 
 Vec3d CreaseCurve::at(double u) const {
   return is_line ? center + a * u : center + a * std::cos(u) + b * std::sin(u);
@@ -188,8 +188,8 @@ std::vector<CreaseCurve> edge_edge_creases(Vec3d corner, Vec3d direction0, Vec3d
 std::optional<CreaseCurve> face_corner_crease(const Plane& face, Vec3d corner, double radius) {
   const double under = face.d - radius - dot(face.normal, corner);
   if (!(std::abs(under) < radius)) return std::nullopt;
-  return circle(corner + face.normal * under, face.normal,
-                std::sqrt(radius * radius - under * under));
+  return crease_circle(corner + face.normal * under, face.normal,
+                       std::sqrt(radius * radius - under * under));
 }
 
 }  // namespace arris

@@ -7,6 +7,7 @@
 //            | face, concave edge | ellipse in the offset plane; two lines if the edge is parallel to the face |
 //            | two concave edges that meet | two ellipses, in planes through the corner of normals a − b, a + b |
 //            | face, concave corner | circle in the offset plane |
+//            | others | equidistant_curve.h |
 // Legend     r radius; a, b unit directions of edges; u parameter: x(u) = center + a·u, or center + a·cos u + b·sin u
 #pragma once
 
@@ -63,5 +64,6 @@ std::vector<CreaseCurve> face_edge_creases(const Plane& face, const EdgeLine& ed
 std::vector<CreaseCurve> edge_edge_creases(Vec3d corner, Vec3d direction0, Vec3d direction1,
                                            double radius);
 std::optional<CreaseCurve> face_corner_crease(const Plane& face, Vec3d corner, double radius);
+CreaseCurve crease_circle(Vec3d center, Vec3d normal, double radius);
 
 }  // namespace arris

@@ -150,7 +150,7 @@ void CreaseCutter::add_reaches_of_all(const CreaseCurve& curve) {
   const double half = 0.5 * (curve.u1 - curve.u0) * length_scale(curve);
   for (const SurfaceTriangle* const t : near_) {
     if (t->region == curve.face_a || t->region == curve.face_b) continue;
-    if (is_apart(curve, *t) || is_at_edge(*t)) continue;
+    if (is_apart(curve, *t) || is_of_features(*t)) continue;
     if (length(middle - nearest_on_triangle(middle, *t)) - half >= threshold_) continue;
     if (curve.is_line) {
       add_reaches_of_line(curve, *t);
@@ -160,10 +160,11 @@ void CreaseCutter::add_reaches_of_all(const CreaseCurve& curve) {
   }
 }
 
-bool CreaseCutter::is_at_edge(const SurfaceTriangle& t) const {
+bool CreaseCutter::is_of_features(const SurfaceTriangle& t) const {
   const auto has = [&](Vec3d p) { return t.p0 == p || t.p1 == p || t.p2 == p; };
-  return std::ranges::any_of(edges_,
-                             [&](const auto& edge) { return has(edge.first) && has(edge.second); });
+  return std::ranges::any_of(corners_, has) || std::ranges::any_of(edges_, [&](const auto& edge) {
+           return has(edge.first) && has(edge.second);
+         });
 }
 
 // Whether all of it is beyond r on one side of the triangle's plane.

@@ -29,9 +29,11 @@ class CreaseCutter {
   CreaseCutter(const SolidSurface& surface, double radius, double tolerance)
       : surface_(surface), r_(radius), tolerance_(tolerance), threshold_(r_ - 1e-3 * tolerance) {}
 
-  // Edges that the curves to come are at r from: the triangles at them reach no nearer.
-  void set_edges(std::span<const std::pair<Vec3d, Vec3d>> edges) {
+  // Edges, and corners, that the curves to come are at r from: the triangles at them reach no nearer.
+  void set_features(std::span<const std::pair<Vec3d, Vec3d>> edges,
+                    std::span<const Vec3d> corners) {
     edges_.assign(edges.begin(), edges.end());
+    corners_.assign(corners.begin(), corners.end());
   }
   // belongs: whether a point of the curve is of its features.
   template <class Belongs>
@@ -54,7 +56,7 @@ class CreaseCutter {
   void add_reaches_of_line(const CreaseCurve& line, const SurfaceTriangle& t);
   void add_reaches_of_arc(const CreaseCurve& arc, const SurfaceTriangle& t);
   void sample(const CreaseCurve& arc);
-  [[nodiscard]] bool is_at_edge(const SurfaceTriangle& t) const;
+  [[nodiscard]] bool is_of_features(const SurfaceTriangle& t) const;
   [[nodiscard]] bool is_apart(const CreaseCurve& curve, const SurfaceTriangle& t) const;
   [[nodiscard]] double shortest(const CreaseCurve& curve) const;
 
@@ -62,6 +64,7 @@ class CreaseCutter {
   double r_, tolerance_;
   double threshold_;  // what is nearer than this is cut away
   std::vector<std::pair<Vec3d, Vec3d>> edges_;
+  std::vector<Vec3d> corners_;
   std::vector<const SurfaceTriangle*> near_;
   std::vector<double> at_;
   // Of an arc, once they have been asked for; and the heights above what is nearer than r of a triangle there.

@@ -9,7 +9,9 @@
 #include <utility>
 
 #include "base/parallel_collect.h"
+#include "rounding/concave_features.h"
 #include "rounding/crease_cutter.h"
+#include "rounding/distant_creases.h"
 
 namespace arris {
 namespace {
@@ -18,23 +20,6 @@ namespace {
 constexpr double kShortPiece = 0.05;
 // Calls that one thread makes at a time.
 constexpr std::size_t kTrianglesAtOnce = 512, kCurvesAtOnce = 64;
-
-// Between two faces, with the directions in them that lead away from it.
-struct ConcaveEdge {
-  Vec3d p0, p1, direction;
-  Vec3d normal0, normal1;
-  Vec3d inward0, inward1;
-  std::uint32_t face0, face1, vertex0, vertex1;
-  bool is_smooth;
-};
-
-// At which a concave edge ends: a ball may touch it.
-struct Corner {
-  Vec3d point;
-  std::vector<Vec3d> directions;     // of its edges, outgoing
-  std::vector<std::uint32_t> faces;  // around it
-  std::vector<std::uint32_t> edges;  // concave ones
-};
 
 // A triangle moved inwards by r: where balls are that touch it.
 struct Offset {
@@ -65,6 +50,10 @@ bool is_apart(Vec3d low_a, Vec3d high_a, Vec3d low_b, Vec3d high_b, double slack
   return false;
 }
 
+ConcaveInput concave_input(const CreaseInput& in) {
+  return {in.mesh, in.regions, in.kinds, in.shells, in.center};
+}
+
 class CreaseFinder {
  public:
   explicit CreaseFinder(const CreaseInput& input)
@@ -72,9 +61,9 @@ class CreaseFinder {
         r_(input.radius),
         tolerance_(crease_tolerance(input.size, input.radius)),
         slack_(1e-3 * tolerance_),
-        offset_tree_(make_offsets()) {
-    collect_edges();
-    collect_corners();
+        offset_tree_(make_offsets()),
+        features_(find_concave_features(concave_input(input))) {
+    collect_convex();
   }
 
   FoundCreases run() {
@@ -94,13 +83,21 @@ class CreaseFinder {
       out.insert(out.end(), more.begin(), more.end());
     };
     append(face_face_creases(pairs));
-    append(parallel_collect<CreaseCurve>(
-        edges_.size(), kCurvesAtOnce,
-        [&](std::size_t i, auto& list) { add_face_edges(edges_[i], list); }));
-    append(parallel_collect<CreaseCurve>(corners_.size(), kCurvesAtOnce,
+    const DistantCreases distant(features_, in_.surface, r_, tolerance_, 2 * in_.size + 4 * r_,
+                                 [&](std::span<const std::uint32_t> a,
+                                     std::span<const std::uint32_t> b) { return are_inner(a, b); });
+    append(parallel_collect<CreaseCurve>(features_.edges.size(), kCurvesAtOnce,
                                          [&](std::size_t i, auto& list) {
-                                           add_edge_edges(corners_[i], list);
-                                           add_face_corners(corners_[i], list);
+                                           add_face_edges(features_.edges[i], list);
+                                           CreaseCutter cutter = make_cutter();
+                                           distant.add_of_edge(std::uint32_t(i), cutter, list);
+                                         }));
+    append(parallel_collect<CreaseCurve>(features_.corners.size(), kCurvesAtOnce,
+                                         [&](std::size_t i, auto& list) {
+                                           add_edge_edges(features_.corners[i], list);
+                                           add_face_corners(features_.corners[i], list);
+                                           CreaseCutter cutter = make_cutter();
+                                           distant.add_of_corner(std::uint32_t(i), cutter, list);
                                          }));
     for (CreaseCurve& curve : out) curve.r0 = curve.r1 = r_;
     return found;
@@ -141,86 +138,13 @@ class CreaseFinder {
     return tolerance_ * (3 + longest / area);
   }
 
-  // Visits each half-edge of the solid that is between two faces.
-  template <class Visit>
-  void for_outlines(const Visit& visit) const {
-    for (const std::uint32_t s : in_.shells) {
-      const Shell& shell = in_.mesh.shells[s];
-      for (std::uint32_t i = 0; i < shell.triangle_count; ++i) {
-        const std::uint32_t t = in_.mesh.triangles_by_shell[shell.first_triangle + i];
-        if (in_.regions.region[t] == kNone) continue;
-        for (std::uint32_t h = 3 * t; h < 3 * t + 3; ++h) {
-          const std::uint32_t twin = in_.mesh.twin[h];
-          if (twin <= kLastHalfEdge && region_of(twin) != region_of(h)) visit(h, twin);
-        }
-      }
-    }
-  }
-
-  void collect_edges() {
-    for_outlines([&](std::uint32_t h, std::uint32_t twin) {
-      if (h > twin) return;
-      if (bends_in(h)) add_edge(h, twin);
-      if (in_.kinds[h] == EdgeKind::convex) {
-        const double extent = length(local(in_.mesh.target(h)) - local(in_.mesh.origin(h)));
-        convex_.push_back({std::minmax(region_of(h), region_of(twin)), extent});
-      }
+  void collect_convex() {
+    for_outlines(concave_input(in_), [&](std::uint32_t h, std::uint32_t twin) {
+      if (h > twin || in_.kinds[h] != EdgeKind::convex) return;
+      const double extent = length(local(in_.mesh.target(h)) - local(in_.mesh.origin(h)));
+      convex_.push_back({std::minmax(region_of(h), region_of(twin)), extent});
     });
     std::ranges::sort(convex_);
-  }
-
-  [[nodiscard]] bool bends_in(std::uint32_t h) const {
-    return in_.kinds[h] == EdgeKind::concave ||
-           (in_.kinds[h] == EdgeKind::smooth && turn_at(in_.mesh, in_.regions, h) < 0);
-  }
-
-  void add_edge(std::uint32_t h, std::uint32_t twin) {
-    ConcaveEdge edge;
-    edge.is_smooth = in_.kinds[h] == EdgeKind::smooth;
-    edge.vertex0 = in_.mesh.origin(h);
-    edge.vertex1 = in_.mesh.target(h);
-    edge.p0 = local(edge.vertex0);
-    edge.p1 = local(edge.vertex1);
-    edge.direction = normalize(edge.p1 - edge.p0);
-    edge.face0 = region_of(h);
-    edge.face1 = region_of(twin);
-    // A face lies to the left of its half-edge.
-    edge.normal0 = in_.regions.planes[edge.face0].normal;
-    edge.normal1 = in_.regions.planes[edge.face1].normal;
-    edge.inward0 = cross(edge.normal0, edge.direction);
-    edge.inward1 = cross(edge.direction, edge.normal1);
-    edges_.push_back(edge);
-  }
-
-  void collect_corners() {
-    if (edges_.empty()) return;
-    std::vector<std::uint32_t> vertices;
-    for (const ConcaveEdge& e : edges_) vertices.insert(vertices.end(), {e.vertex0, e.vertex1});
-    std::ranges::sort(vertices);
-    vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
-    corners_.resize(vertices.size());
-    const auto corner_at = [&](std::uint32_t vertex) -> Corner* {
-      const auto found = std::ranges::lower_bound(vertices, vertex);
-      if (found == vertices.end() || *found != vertex) return nullptr;
-      return &corners_[std::size_t(found - vertices.begin())];
-    };
-    for (std::size_t i = 0; i < vertices.size(); ++i) corners_[i].point = local(vertices[i]);
-    for (std::uint32_t i = 0; i < edges_.size(); ++i) {
-      corner_at(edges_[i].vertex0)->edges.push_back(i);
-      corner_at(edges_[i].vertex1)->edges.push_back(i);
-    }
-    for_outlines([&](std::uint32_t h, std::uint32_t) {
-      const std::uint32_t from = in_.mesh.origin(h), to = in_.mesh.target(h);
-      const Vec3d direction = normalize(local(to) - local(from));
-      if (Corner* const corner = corner_at(from)) {
-        corner->directions.push_back(direction);
-        corner->faces.push_back(region_of(h));
-      }
-      if (Corner* const corner = corner_at(to)) {
-        corner->directions.push_back(-direction);
-        corner->faces.push_back(region_of(h));
-      }
-    });
   }
 
   // Faces whose convex edges have none, but for pieces of curved rims that are short enough to be rounded by their
@@ -282,11 +206,23 @@ class CreaseFinder {
   [[nodiscard]] bool is_ended(std::uint32_t face) const {
     return std::ranges::binary_search(ended_, face);
   }
+  [[nodiscard]] bool is_any_ended(std::span<const std::uint32_t> faces) const {
+    return std::ranges::any_of(faces, [&](std::uint32_t face) { return is_ended(face); });
+  }
+  // Whether features between these faces are of one curved surface, away from its ends.
+  [[nodiscard]] bool are_inner(std::span<const std::uint32_t> a,
+                               std::span<const std::uint32_t> b) const {
+    if (is_any_ended(a) || is_any_ended(b)) return false;
+    return std::ranges::any_of(a, [&](std::uint32_t face) {
+      return std::ranges::any_of(
+          b, [&](std::uint32_t other) { return face == other || are_joined(face, other); });
+    });
+  }
   // Creases between features of one curved surface matter only where its rounded edges are.
   [[nodiscard]] bool matters(std::uint32_t face, std::span<const std::uint32_t> others) const {
     return is_ended(face) ||
            std::ranges::none_of(others, [&](std::uint32_t o) { return are_joined(face, o); }) ||
-           std::ranges::any_of(others, [&](std::uint32_t o) { return is_ended(o); });
+           is_any_ended(others);
   }
 
   void add_crossing(std::uint32_t i, std::vector<TrianglePair>& pairs) const {
@@ -391,69 +327,56 @@ class CreaseFinder {
     }
   }
 
-  // Centres of the balls that touch an edge from between its faces.
-  [[nodiscard]] Box box_about(const ConcaveEdge& edge) const {
-    const Vec3d end0 = edge.normal0 * -r_, end1 = edge.normal1 * -r_;
-    const double half_turn =
-        0.5 * std::acos(std::clamp(dot(edge.normal0, edge.normal1), -1.0, 1.0));
-    const Vec3d bulge(r_ * (1 - std::cos(half_turn)));
-    return {min(edge.p0, edge.p1) + max(min(end0, end1) - bulge, Vec3d(-r_)),
-            max(edge.p0, edge.p1) + min(max(end0, end1) + bulge, Vec3d(r_)), 0};
-  }
-
   void add_face_edges(const ConcaveEdge& edge, std::vector<CreaseCurve>& out) const {
     CreaseCutter cutter = make_cutter();
-    cutter.set_edges({{{edge.p0, edge.p1}}});
-    const Box box = box_about(edge);
-    const std::array<CurveBound, 4> wedge{{{edge.inward0, -dot(edge.inward0, edge.p0)},
-                                           {edge.inward1, -dot(edge.inward1, edge.p0)},
-                                           {-edge.direction, dot(edge.direction, edge.p0)},
-                                           {edge.direction, -dot(edge.direction, edge.p1)}}};
+    cutter.set_features({{{edge.p0, edge.p1}}}, {});
+    const Box box = edge.box(r_);
+    const std::array<CurveBound, 4> wedge = edge.bounds();
     for_faces_near(box.low, box.high, [&](std::uint32_t face, const auto& triangles) {
       if (face == edge.face0 || face == edge.face1 || !may_reach_into(wedge, triangles)) return;
       if (!matters(face, std::array{edge.face0, edge.face1})) return;
       for (CreaseCurve& curve :
            face_edge_creases(plane(face), {edge.p0, edge.direction}, r_, 2 * in_.size + 4 * r_)) {
         curve.face_a = face;
-        std::vector<CurveBound> bounds;
+        std::vector<CurveBound> bounds(wedge.begin(), wedge.end());
         add_sides(triangles, bounds);
-        add_edge_bounds(edge, bounds);
         cutter.cut(
-            curve, bounds, [&](Vec3d x) { return touches(edge, x) && is_over_any(triangles, x); },
+            curve, bounds,
+            [&](Vec3d x) {
+              return edge.is_touched_from(x, tolerance_) && is_over_any(triangles, x);
+            },
             out);
       }
     });
   }
 
-  void add_edge_edges(const Corner& corner, std::vector<CreaseCurve>& out) const {
-    const auto is_smooth = [&](std::uint32_t i) { return edges_[i].is_smooth; };
-    const auto is_at_end = [&](std::uint32_t face) { return is_ended(face); };
-    if (std::ranges::all_of(corner.edges, is_smooth) &&
-        std::ranges::none_of(corner.faces, is_at_end)) {
-      return;
-    }
+  void add_edge_edges(const ConcaveCorner& corner, std::vector<CreaseCurve>& out) const {
+    if (corner.is_smooth && !is_any_ended(corner.faces)) return;
     for (std::size_t i = 0; i < corner.edges.size(); ++i) {
       for (std::size_t k = i + 1; k < corner.edges.size(); ++k) {
-        const ConcaveEdge& e = edges_[corner.edges[i]];
-        const ConcaveEdge& f = edges_[corner.edges[k]];
+        const ConcaveEdge& e = features_.edges[corner.edges[i]];
+        const ConcaveEdge& f = features_.edges[corner.edges[k]];
         CreaseCutter cutter = make_cutter();
-        cutter.set_edges({{{e.p0, e.p1}, {f.p0, f.p1}}});
+        cutter.set_features({{{e.p0, e.p1}, {f.p0, f.p1}}}, {});
         for (const CreaseCurve& curve :
              edge_edge_creases(corner.point, e.direction, f.direction, r_)) {
           std::vector<CurveBound> bounds;
-          add_edge_bounds(e, bounds);
-          add_edge_bounds(f, bounds);
+          for (const CurveBound& bound : e.bounds()) bounds.push_back(bound);
+          for (const CurveBound& bound : f.bounds()) bounds.push_back(bound);
           cutter.cut(
-              curve, bounds, [&](Vec3d x) { return touches(e, x) && touches(f, x); }, out);
+              curve, bounds,
+              [&](Vec3d x) {
+                return e.is_touched_from(x, tolerance_) && f.is_touched_from(x, tolerance_);
+              },
+              out);
         }
       }
     }
   }
 
-  void add_face_corners(const Corner& corner, std::vector<CreaseCurve>& out) const {
+  void add_face_corners(const ConcaveCorner& corner, std::vector<CreaseCurve>& out) const {
     CreaseCutter cutter = make_cutter();
-    std::vector<CurveBound> cone;
-    for (const Vec3d d : corner.directions) cone.push_back({d, -dot(d, corner.point)});
+    const std::vector<CurveBound> cone = corner.bounds();
     for_faces_near(
         corner.point - Vec3d(r_), corner.point + Vec3d(r_),
         [&](std::uint32_t face, const auto& triangles) {
@@ -466,7 +389,10 @@ class CreaseFinder {
           add_sides(triangles, bounds);
           cutter.cut(
               *curve, bounds,
-              [&](Vec3d x) { return touches(corner, x) && is_over_any(triangles, x); }, out);
+              [&](Vec3d x) {
+                return corner.is_touched_from(x, tolerance_) && is_over_any(triangles, x);
+              },
+              out);
         });
   }
 
@@ -506,26 +432,6 @@ class CreaseFinder {
     });
   }
 
-  // Where a point's nearest point of the edge's line is no longer that of the surface.
-  static void add_edge_bounds(const ConcaveEdge& edge, std::vector<CurveBound>& bounds) {
-    bounds.push_back({edge.inward0, -dot(edge.inward0, edge.p0)});
-    bounds.push_back({edge.inward1, -dot(edge.inward1, edge.p0)});
-    bounds.push_back({edge.direction, -dot(edge.direction, edge.p0)});
-    bounds.push_back({edge.direction, -dot(edge.direction, edge.p1)});
-  }
-
-  // Whether a ball around x would touch the edge, or corner, and nothing about it before.
-  [[nodiscard]] bool touches(const ConcaveEdge& edge, Vec3d x) const {
-    return dot(edge.inward0, x - edge.p0) <= tolerance_ &&
-           dot(edge.inward1, x - edge.p0) <= tolerance_ &&
-           dot(edge.direction, x - edge.p0) >= -tolerance_ &&
-           dot(edge.direction, x - edge.p1) <= tolerance_;
-  }
-  [[nodiscard]] bool touches(const Corner& corner, Vec3d x) const {
-    return std::ranges::all_of(corner.directions,
-                               [&](Vec3d d) { return dot(d, x - corner.point) <= tolerance_; });
-  }
-
   const CreaseInput& in_;
   double r_, tolerance_;
   double slack_;                 // by which what is computed may lie beside its features
@@ -533,8 +439,7 @@ class CreaseFinder {
   BoxTree offset_tree_;
   std::vector<std::pair<FacePair, double>> convex_;  // edges by their faces, with their lengths
   std::vector<std::uint32_t> ended_;  // faces with a crease that is not within one curved surface
-  std::vector<ConcaveEdge> edges_;
-  std::vector<Corner> corners_;
+  ConcaveFeatures features_;
 };
 
 }  // namespace

@@ -7,8 +7,6 @@
 // In / Out   coordinates relative to the solid's centre
 // Guarantee  every point of a crease lies in E: balls around it hold nothing that is not in opening(P), so that a
 //            crease too many does no harm
-// Limits     two concave edges that don't meet, or a corner and an edge, within 2 r of each other give no curve: walls
-//            between them are thinner than 2 r and vanish but for what other creases hold
 // Cost       about linear in the pairs of triangles whose offsets cross, times the triangles within r of their crease;
 //            on all cores
 #pragma once
