@@ -39,9 +39,16 @@ class CreaseCutter {
   template <class Belongs>
   void cut(const CreaseCurve& curve, std::span<const CurveBound> bounds, const Belongs& belongs,
            std::vector<CreaseCurve>& out) {
+    for_pieces_of(curve, bounds, belongs,
+                  [&](const CreaseCurve& piece) { cut_reached(piece, out); });
+  }
+  // The pieces that belong.
+  template <class Belongs, class Take>
+  void for_pieces_of(const CreaseCurve& curve, std::span<const CurveBound> bounds,
+                     const Belongs& belongs, const Take& take) const {
     std::vector<double> at{curve.u0, curve.u1};
     for (const CurveBound& bound : bounds) add_crossings(curve, bound.normal, bound.alpha, at);
-    for_pieces(curve, at, belongs, [&](const CreaseCurve& piece) { cut_reached(piece, out); });
+    for_pieces(curve, at, belongs, take);
   }
   // The same where all of the curve belongs.
   void cut_reached(const CreaseCurve& curve, std::vector<CreaseCurve>& out);

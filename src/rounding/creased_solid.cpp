@@ -26,6 +26,10 @@ constexpr double kBeneath = 1e-5;
 constexpr double kTolerances = 8;
 // Of the radius: a point this near to the sharp surface is on it.
 constexpr double kOnSurface = 1e-4;
+// Cosine of the angle to a face's normal up to which the way from a place to the nearest one of the face is along it.
+constexpr double kStraightOut = 1 - 1e-10;
+// Of the radius: so far beside a face it is asked in the nearest place of it. More than a cell of StuckPlaces.
+constexpr double kBesideFace = 0.25;
 // Of the radius: most ways through a void are shorter.
 constexpr double kShortWay = 4;
 // Of a way that should lie in a void: how many radii beneath the surface it may not be, and by how many it is looked
@@ -94,8 +98,31 @@ bool CreasedSolid::is_kept(const MeshPlace& at, Vec3d x, Vec3d normal, std::uint
 
 bool CreasedSolid::stays(Vec3d x, Vec3d normal, std::uint32_t region, double r) const {
   if (surface.is_firm(region) || mouths.hold(surface, x)) return true;
-  return is_between_walls(surface, x - normal * r, 2 * r) &&
-         gets_stuck(surface, x, normal, region, r - tolerance);
+  if (!is_between_walls(surface, x - normal * r, 2 * r)) return false;
+  return stuck.at(x, normal, region, [&](Vec3d y) { return gets_stuck_at(y, normal, region); });
+}
+
+bool CreasedSolid::stays_at_edge(Vec3d x, Vec3d out, std::uint32_t region, double r) const {
+  if (surface.is_firm(region) || mouths.hold(surface, x)) return true;
+  return is_between_walls(surface, x - out * r, 2 * r) &&
+         gets_stuck(surface, x, out, region, r - tolerance);
+}
+
+StuckPlaces::Answer CreasedSolid::gets_stuck_at(Vec3d x, Vec3d normal, std::uint32_t region) const {
+  using Answer = StuckPlaces::Answer;
+  double nearest = kBesideFace * radius;
+  std::optional<Vec3d> place;
+  surface.for_each_near(x - Vec3d(nearest), x + Vec3d(nearest), [&](const SurfaceTriangle& t) {
+    if (t.region != region) return;
+    const Vec3d y = nearest_on_triangle(x, t);
+    const double distance = length(x - y);
+    if (distance >= nearest) return;
+    nearest = distance;
+    place = y;
+  });
+  if (!place) return Answer::not_on_face;
+  const double least = field.at(*place) - tolerance;
+  return gets_stuck(surface, *place, normal, region, least) ? Answer::yes : Answer::no;
 }
 
 VoidCrossing CreasedSolid::cross_void(Vec3d x, Vec3d direction) const {
@@ -184,21 +211,22 @@ bool CreasedSolid::is_beneath(Vec3d x, double radii) const {
   if (within || mouths.hold(surface, x)) return true;
   double nearest = radius;
   Vec3d foot;
-  std::uint32_t region = kNone;
+  const SurfaceTriangle* at = nullptr;
   surface.for_each_near(x - Vec3d(radius), x + Vec3d(radius), [&](const SurfaceTriangle& t) {
     const Vec3d y = nearest_on_triangle(x, t);
     const double distance = length(x - y);
     if (distance >= nearest) return;
     nearest = distance;
     foot = y;
-    region = t.region;
+    at = &t;
   });
-  if (nearest >= radius) return true;
-  const double r = region == kNone ? radius : field.at(foot);
+  if (at == nullptr) return true;
+  const double r = field.at(foot);
   if (nearest < std::max(kOnSurface, radii) * radius || r <= tolerance) return false;
-  const Vec3d center = foot + (x - foot) * (r / nearest);
-  return !surface.is_near(center, r - tolerance, region) ||
-         stays(foot, (foot - x) / nearest, region, r);
+  const Vec3d out = (foot - x) / nearest;
+  if (!surface.is_near(foot - out * r, r - tolerance, at->region)) return true;
+  const bool is_in_face = dot(out, normal_of(*at)) > kStraightOut;
+  return is_in_face ? stays(foot, out, at->region, r) : stays_at_edge(foot, out, at->region, r);
 }
 
 std::optional<EdgeBlend> CreasedSolid::blend_at(Vec3d x, Vec3d normal) const {

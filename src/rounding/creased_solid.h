@@ -24,6 +24,7 @@
 #include "rounding/open_mouths.h"
 #include "rounding/radius_field.h"
 #include "rounding/solid_surface.h"
+#include "rounding/stuck_places.h"
 
 namespace arris {
 
@@ -55,6 +56,7 @@ struct CreasedSolid {
   ClearCells clear;      // of the caller's triangles of which bands tell little
   NearLists near;        // of those with bands, and few others near
   OpenMouths mouths;     // of the space outside
+  StuckPlaces stuck;
 
   // Which part of the balls is surface, for outlines: made on all cores when it is first asked for.
   [[nodiscard]] const CreaseShape& shape() const;
@@ -81,6 +83,11 @@ struct CreasedSolid {
 
   // Whether a place of a face that no ball of the radius r can touch stays all the same.
   [[nodiscard]] bool stays(Vec3d x, Vec3d normal, std::uint32_t region, double r) const;
+  // The same of an edge, whose balls lie in another direction.
+  [[nodiscard]] bool stays_at_edge(Vec3d x, Vec3d out, std::uint32_t region, double r) const;
+  // Whether a ball gets stuck that touches a face at a place of its plane, or at the nearest one of the face.
+  [[nodiscard]] StuckPlaces::Answer gets_stuck_at(Vec3d x, Vec3d normal,
+                                                  std::uint32_t region) const;
   // Where a way through the void comes to material that stays; nothing: nowhere before the pipe, or the exit.
   [[nodiscard]] std::optional<PipeHit> first_material(Vec3d x, Vec3d direction,
                                                       const VoidCrossing& crossing) const;

@@ -17,6 +17,9 @@ namespace {
 constexpr double kFit = 1e-7;
 // Of the radius: how far behind a ball on two lips room for another is looked for, and by which steps.
 constexpr double kBehind = 8, kStep = 0.25;
+// How often a curve is looked at for whether any of it stays; of the radius, how far apart.
+constexpr int kLeastPlaces = 16;
+constexpr double kPlaceStep = 0.1;
 // Of the tolerance: edges that go apart by less are parallel, and those that pass by less meet.
 constexpr double kBeside = 0.25;
 // Sine of the angle from which on the closed form of edges that cross is good.
@@ -117,16 +120,28 @@ void DistantCreases::cut(const std::vector<CreaseCurve>& curves, const A& a, con
   for (const CurveBound& bound : a.bounds()) bounds.push_back(bound);
   for (const CurveBound& bound : b.bounds()) bounds.push_back(bound);
   std::vector<CreaseCurve> found;
+  const auto belongs = [&](Vec3d x) {
+    return a.is_touched_from(x, tolerance_) && b.is_touched_from(x, tolerance_);
+  };
   for (const CreaseCurve& curve : curves) {
-    cutter.cut(
-        curve, bounds,
-        [&](Vec3d x) {
-          return a.is_touched_from(x, tolerance_) && b.is_touched_from(x, tolerance_);
-        },
-        found);
+    cutter.for_pieces_of(curve, bounds, belongs, [&](const CreaseCurve& piece) {
+      if (!is_buried(piece)) cutter.cut_reached(piece, found);
+    });
   }
   std::ranges::copy_if(found, std::back_inserter(out),
                        [&](const CreaseCurve& curve) { return !is_on_lips(curve); });
+}
+
+// The rim of a hole that is no wider than the ball has such curves between all its edges.
+bool DistantCreases::is_buried(const CreaseCurve& curve) const {
+  const double scale = curve.is_line ? 1 : std::max(length(curve.a), length(curve.b));
+  const double extent = (curve.u1 - curve.u0) * scale;
+  const int places = std::max(kLeastPlaces, int(extent / (kPlaceStep * r_)));
+  for (int i = 0; i < places; ++i) {
+    const double u = curve.u0 + (curve.u1 - curve.u0) * (i + 0.5) / places;
+    if (!surface_.is_near(curve.at(u), r_ - tolerance_, kNone)) return false;
+  }
+  return true;
 }
 
 // Looked for behind the middle of what the ball touches.

@@ -86,6 +86,10 @@ class CreasedMaker {
     if (found.curves.empty()) return std::nullopt;
     auto [bands, lists] = find_bands(surface);
     ClearCells clear = find_clear_cells(surface, bands);
+    double area = 0;
+    for (const SurfaceTriangle& t : surface.triangles()) {
+      area += 0.5 * length(cross(t.p1 - t.p0, t.p2 - t.p0));
+    }
     CreasedSolid solid{std::move(surface),
                        CreasePipes(std::move(found.curves)),
                        std::move(found.field),
@@ -93,7 +97,8 @@ class CreasedMaker {
                        crease_tolerance(outer_.size(), r_),
                        std::move(clear),
                        NearLists(lists),
-                       {}};
+                       {},
+                       StuckPlaces(r_, area)};
     if (in_.is_outside) {
       solid.mouths = OpenMouths(solid.surface, solid.pipes, solid.tolerance);
     }

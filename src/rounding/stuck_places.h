@@ -1,0 +1,81 @@
+// stuck_places.h — remembers in which places of faces balls get stuck
+// What       Each face has a grid of places. Between four of them that agree all is as they are, elsewhere the place
+//            itself is asked. What has been found out is kept in a table, in which it may be overwritten: a search by
+//            growing_ball.h costs as much as hundreds of rays.
+// Threads    may be used by several; what is answered does not depend on their order
+// Limits     what is smaller than a cell, an eighth of the radius, may be missed
+#pragma once
+
+#include <array>
+#include <atomic>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <mutex>
+
+#include "arris/math.h"
+
+namespace arris {
+
+class StuckPlaces {
+ public:
+  // No balls.
+  StuckPlaces() = default;
+  // area: of all faces.
+  StuckPlaces(double radius, double area);
+
+  // is_stuck: whether balls get stuck at a place of the face's plane, or at the nearest one of the face.
+  enum class Answer : std::uint8_t { no, yes, not_on_face };
+  template <class IsStuck>
+  [[nodiscard]] bool at(Vec3d x, Vec3d normal, std::uint32_t face, const IsStuck& is_stuck) const {
+    const auto [u, v] = axes_across(normal);
+    const double along_u = dot(x, u) / spacing_, along_v = dot(x, v) / spacing_;
+    const double u0 = std::floor(along_u), v0 = std::floor(along_v);
+    const Answer first = at_vertex(x, {u, v}, {u0, v0}, face, is_stuck);
+    const auto agrees = [&](double du, double dv) {
+      return at_vertex(x, {u, v}, {u0 + du, v0 + dv}, face, is_stuck) == first;
+    };
+    if (first != Answer::not_on_face && agrees(1, 0) && agrees(0, 1) && agrees(1, 1)) {
+      return first == Answer::yes;
+    }
+    return is_stuck(x) == Answer::yes;
+  }
+
+ private:
+  struct Table {
+    std::once_flag once;
+    std::unique_ptr<std::atomic<std::uint64_t>[]>
+        entries;  // a hash, and an answer in its lowest bits
+  };
+
+  template <class IsStuck>
+  [[nodiscard]] Answer at_vertex(Vec3d x, const std::array<Vec3d, 2>& axes,
+                                 const std::array<double, 2>& cell, std::uint32_t face,
+                                 const IsStuck& is_stuck) const {
+    const std::uint64_t hash = hash_of(face, cell);
+    std::atomic<std::uint64_t>& entry = entry_of(hash);
+    const std::uint64_t known = entry.load(std::memory_order_relaxed);
+    if ((known & ~kAnswerBits) == (hash & ~kAnswerBits) && (known & kAnswerBits) != 0) {
+      return Answer((known & kAnswerBits) - 1);
+    }
+    Vec3d place = x;
+    for (std::size_t i = 0; i < 2; ++i) {
+      place += axes[i] * (cell[i] * spacing_ - dot(x, axes[i]));
+    }
+    const Answer answer = is_stuck(place);
+    entry.store((hash & ~kAnswerBits) | (std::uint64_t(answer) + 1), std::memory_order_relaxed);
+    return answer;
+  }
+  static constexpr std::uint64_t kAnswerBits = 3;  // 0: nothing is known
+
+  [[nodiscard]] static std::array<Vec3d, 2> axes_across(Vec3d normal);
+  [[nodiscard]] static std::uint64_t hash_of(std::uint32_t face, const std::array<double, 2>& cell);
+  [[nodiscard]] std::atomic<std::uint64_t>& entry_of(std::uint64_t hash) const;
+
+  double spacing_ = 0;
+  int bits_ = 0;  // of the table's size
+  std::unique_ptr<Table> table_;
+};
+
+}  // namespace arris
