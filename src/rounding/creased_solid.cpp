@@ -146,8 +146,8 @@ std::optional<PipeHit> CreasedSolid::first_material(Vec3d x, Vec3d direction,
   if (!std::isfinite(end)) return std::nullopt;
   const Vec3d last = x + direction * end;
   const Vec3d low = min(x, last), high = max(x, last), reach(radius);
-  if (field.is_uniform() && !surface.has_firm_near(low - reach, high + reach) &&
-      !mouths.is_near(low, high) &&
+  if (!surface.has_firm_near(low - reach, high + reach) && !mouths.is_near(low, high) &&
+      field.is_uniform_within(low, high) &&
       !is_between_walls(surface, (x + last) * 0.5, 2 * radius + 0.5 * length(last - x))) {
     return std::nullopt;
   }

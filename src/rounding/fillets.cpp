@@ -24,15 +24,15 @@ Fillets::Fillets(const CreasedSolid& outside, std::span<const PlainCrease> plain
     // Around a corner the balls touch nothing else: the seam of two offsets, not a crease. Smooth edges stay.
     if (toward.size() < 2 || contacts.are_at_smooth_edge(outside.surface)) continue;
     Part part{i, curve.is_line && toward.size() == 2, toward[0], toward[1]};
-    part.among_walls =
-        !outside.field.is_uniform() || is_among_walls(curve) || outside.mouths.is_behind(i);
-    any_among_walls_ = any_among_walls_ || part.among_walls;
     while (!plain.empty() && plain.front().part < i) plain = plain.subspan(1);
     if (!plain.empty() && plain.front().part == i) {
       part.plain0 = dot(plain.front().axis, plain.front().p0 - curve.center);
       part.plain1 = part.plain0 + plain.front().length;
     }
     set_box(part);
+    part.among_walls = !outside.field.is_uniform_within(part.low, part.high) ||
+                       is_among_walls(curve) || outside.mouths.is_behind(i);
+    any_among_walls_ = any_among_walls_ || part.among_walls;
     parts_.push_back(part);
   }
 }
@@ -76,6 +76,8 @@ bool Fillets::begins_at(const Part& part, const PipePlace& place) const {
   const double r = curve.radius_at(place.u);
   const Vec3d x = c + place.normal * r;
   if (min(x, part.low) != part.low || max(x, part.high) != part.high) return false;
+  const bool is_plain = place.u > part.plain0 && place.u < part.plain1;
+  if (!is_plain && outside_->pipes.holds(x, r * kOnBall)) return false;
   const bool is_end = place.u <= curve.u0 || place.u >= curve.u1, grows = curve.r0 != curve.r1;
   if (part.has_sides && (grows || !is_end)) {
     // Normals of cones lean, and what is between two of different slopes belongs to their common ball.
@@ -86,9 +88,7 @@ bool Fillets::begins_at(const Part& part, const PipePlace& place) const {
   } else if (!contacts_at(curve, place.u).hold(place.normal)) {
     return false;
   }
-  if (place.u > part.plain0 && place.u < part.plain1) return true;
-  if (outside_->pipes.holds(x, r * kOnBall)) return false;
-  return !part.among_walls || !outside_->is_beneath(x + place.normal * (kBehind * r));
+  return is_plain || !part.among_walls || !outside_->is_beneath(x + place.normal * (kBehind * r));
 }
 
 std::optional<FilletCrossing> Fillets::meet(std::uint32_t index, Vec3d origin, Vec3d direction,

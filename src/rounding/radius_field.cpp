@@ -33,21 +33,39 @@ RadiusField::RadiusField(std::vector<EdgeProfile> edges) : edges_(std::move(edge
   tree_ = BoxTree(std::move(boxes));
 }
 
-double RadiusField::at(Vec3d x) const {
-  if (is_uniform()) return largest_;
+std::optional<RadiusField::Nearest> RadiusField::nearest(Vec3d x) const {
   for (const double part : kReaches) {
-    double least = part * largest_, radius = -1;
-    tree_.for_each_near(x - Vec3d(least), x + Vec3d(least), [&](std::uint32_t i) {
+    Nearest found{part * largest_, -1};
+    const Vec3d reach(found.distance);
+    tree_.for_each_near(x - reach, x + reach, [&](std::uint32_t i) {
       const EdgeProfile& e = edges_[i];
       const double v = std::clamp(dot(x - e.p0, e.direction), 0.0, e.length);
       const double distance = length(x - e.p0 - e.direction * v);
-      if (distance >= least) return;
-      least = distance;
-      radius = e.at(v);
+      if (distance < found.distance) found = {distance, e.at(v)};
     });
-    if (radius >= 0) return radius;
+    if (found.radius >= 0) return found;
   }
-  return largest_;
+  return std::nullopt;
+}
+
+double RadiusField::at(Vec3d x) const {
+  if (is_uniform()) return largest_;
+  const std::optional<Nearest> found = nearest(x);
+  return found ? found->radius : largest_;
+}
+
+// An edge that is the nearest to a place of the box is no farther from its middle than the nearest one of that, and
+// the box's diagonal.
+bool RadiusField::is_uniform_within(Vec3d low, Vec3d high) const {
+  if (is_uniform()) return true;
+  const Vec3d middle = (low + high) * 0.5;
+  const std::optional<Nearest> found = nearest(middle);
+  if (!found) return false;
+  const Vec3d reach(found->distance + length(high - low));
+  return !tree_.any_near(middle - reach, middle + reach, [&](std::uint32_t i) {
+    return std::ranges::any_of(
+        edges_[i].knots, [&](const RadiusKnot& knot) { return knot.radius != found->radius; });
+  });
 }
 
 std::size_t RadiusField::bytes() const {

@@ -6,6 +6,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "arris/math.h"
@@ -36,9 +37,16 @@ class RadiusField {
   [[nodiscard]] double largest() const { return largest_; }
   // Farther than four times the largest radius from all edges it is the largest.
   [[nodiscard]] double at(Vec3d x) const;
+  // Whether it is seen at once that all of a box has one radius.
+  [[nodiscard]] bool is_uniform_within(Vec3d low, Vec3d high) const;
   [[nodiscard]] std::size_t bytes() const;
 
  private:
+  struct Nearest {
+    double distance, radius;
+  };
+  [[nodiscard]] std::optional<Nearest> nearest(Vec3d x) const;
+
   double largest_ = 0;
   std::vector<EdgeProfile> edges_;
   BoxTree tree_{{}};
