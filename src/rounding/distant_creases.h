@@ -4,7 +4,8 @@
 //            gives a curve (crease_curve.h, equidistant_curve.h). A ball on both lips of a passage that it can't pass
 //            has none if another has room behind it: what is between stays (thin_walls.h, open_mouths.h).
 // In / Out   coordinates relative to the solid's centre
-// Limits     of curves most of which is buried, what is shorter than a sixteenth, or a tenth of the radius, may be missed
+// Limits     of curves most of which is buried, what is shorter than a sixteenth, or a tenth of the radius, may be
+//            missed
 // Cost       about linear in the pairs within 2 r of each other that lie beneath one another's planes
 #pragma once
 

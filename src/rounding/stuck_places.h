@@ -29,12 +29,12 @@ class StuckPlaces {
   enum class Answer : std::uint8_t { no, yes, not_on_face };
   template <class IsStuck>
   [[nodiscard]] bool at(Vec3d x, Vec3d normal, std::uint32_t face, const IsStuck& is_stuck) const {
-    const auto [u, v] = axes_across(normal);
-    const double along_u = dot(x, u) / spacing_, along_v = dot(x, v) / spacing_;
+    const std::array<Vec3d, 2> axes = axes_across(normal);
+    const double along_u = dot(x, axes[0]) / spacing_, along_v = dot(x, axes[1]) / spacing_;
     const double u0 = std::floor(along_u), v0 = std::floor(along_v);
-    const Answer first = at_vertex(x, {u, v}, {u0, v0}, face, is_stuck);
+    const Answer first = at_vertex(x, axes, {u0, v0}, face, is_stuck);
     const auto agrees = [&](double du, double dv) {
-      return at_vertex(x, {u, v}, {u0 + du, v0 + dv}, face, is_stuck) == first;
+      return at_vertex(x, axes, {u0 + du, v0 + dv}, face, is_stuck) == first;
     };
     if (first != Answer::not_on_face && agrees(1, 0) && agrees(0, 1) && agrees(1, 1)) {
       return first == Answer::yes;

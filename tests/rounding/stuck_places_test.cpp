@@ -68,7 +68,8 @@ TEST(StuckPlaces, are_what_is_found_in_the_place_itself) {
   EXPECT_GT(tally.stuck, 500);
   EXPECT_GT(tally.places - tally.stuck, 300);
   // Within a cell of a border that three of its corners don't see.
-  EXPECT_LE(300 * tally.wrong, tally.places) << tally.wrong << " of " << tally.places << " stuck " << tally.stuck;
+  EXPECT_LE(300 * tally.wrong, tally.places)
+      << tally.wrong << " of " << tally.places << " stuck " << tally.stuck;
 }
 
 }  // namespace
