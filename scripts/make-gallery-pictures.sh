@@ -31,5 +31,12 @@ row saddle saddle 0.3 0,0,0 1.2,-3.2,3.6 34
 row boss boss 0.25 0.6,-0.6,0.25 2.4,-3.2,2 34
 row hole hole 0.2 0,0.7,-0.2 0.6,-2.2,1.9 34
 row too_large step 0.3 0,0.2,0 2,-2.5,1.5 32
+row rib rib 0.25 0.2,-0.8,0.3 2.2,-3.8,2.6 34
 row fillet_end bracket 0.25 0.1,0,0 2,-2.6,1.7 32 --round-edges both
 row fillet_foot boss 0.25 0.6,-0.6,0.25 2.4,-3.2,2 34 --round-edges both
+
+# Only the exact rounding has edges of several radii.
+"$arris" render "$models/radii.toml" -o "$pictures/radii_exact.jpg" --camera-target 0.5,0.6,0.3 \
+  --camera-position 4.2,-4.4,3.4 --fov 32 --size 480x320 --spp "${ARRIS_SPP:-48}" --denoise edges \
+  --material plastic-blue --quiet
+echo "$pictures/radii_exact.jpg"

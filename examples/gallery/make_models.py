@@ -9,11 +9,28 @@ saddle.obj    two convex and two concave edges in turn
 boss.obj      a block on a plate
 hole.obj      a plate with a round hole of 48 facets, with normals
 step.obj      a step that is lower than the others' radius
+rib.obj       a plate with a rib that is thinner than two radii, beside one that is thicker
+radii.toml    the bracket with edges of several radii
 """
 
 import math
 import sys
 from pathlib import Path
+
+
+RADII = """\
+[[object]]
+file = "bracket.obj"
+
+[object.round]
+radius = 0.08
+edges = "both"
+rules = [
+  { radius = 0.6, kind = "concave" },
+  { radius = 0.4, edges = [[[2, 0, 0], [2, 2, 0]], [[0, 0, 2], [0, 2, 2]]] },
+  { radius = 0, edges = [[[2, 0, -1], [2, 2, -1]]] },
+]
+"""
 
 
 def write(path, points, faces, normals=None):
@@ -125,6 +142,9 @@ def main(folder):
                 lambda x, y, z: z < 0 or max(abs(x), abs(y)) < 0.8)
     write_hole(folder / "hole.obj")
     write_cells(folder / "step.obj", [-2, 0, 2], [0, 2], [-1.2, 0, 0.15], lambda x, y, z: z < 0 or x < 0)
+    write_cells(folder / "rib.obj", [-2, -0.6, -0.35, 0.35, 1.25, 2], [-0.8, 2], [-0.8, 0, 1],
+                lambda x, y, z: z < 0 or -0.6 < x < -0.35 or 0.35 < x < 1.25)
+    (folder / "radii.toml").write_text(RADII)
 
 
 main(Path(sys.argv[1]))

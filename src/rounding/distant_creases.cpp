@@ -8,6 +8,8 @@
 
 #include "rounding/contacts.h"
 #include "rounding/equidistant_curve.h"
+#include "rounding/growing_ball.h"
+#include "rounding/thin_walls.h"
 
 namespace arris {
 namespace {
@@ -17,6 +19,8 @@ namespace {
 constexpr double kFit = 1e-7;
 // Of the radius: how far behind a ball on two lips room for another is looked for, and by which steps.
 constexpr double kBehind = 8, kStep = 0.25;
+// Of half the angle between what it touches, the least cosine.
+constexpr double kLeastCosine = 0.1;
 // How often a curve is looked at for whether any of it stays; of the radius, how far apart.
 constexpr int kLeastPlaces = 16;
 constexpr double kPlaceStep = 0.1;
@@ -147,7 +151,7 @@ bool DistantCreases::is_buried(const CreaseCurve& curve) const {
 // Looked for behind the middle of what the ball touches.
 bool DistantCreases::is_on_lips(const CreaseCurve& curve) const {
   const Vec3d c = curve.at(0.5 * (curve.u0 + curve.u1));
-  const Vec3d n = Contacts(surface_, c, r_ + tolerance_).spread().middle;
+  const auto [n, half_cosine] = Contacts(surface_, c, r_ + tolerance_).spread();
   if (length_squared(n) == 0) return true;
   const double end = std::min(surface_.first_exit(c, n, 0, kBehind * r_).t, kBehind * r_);
   bool has_left = false;
@@ -156,7 +160,24 @@ bool DistantCreases::is_on_lips(const CreaseCurve& curve) const {
     if (fits && has_left) return true;
     has_left = has_left || !fits;
   }
-  return false;
+  // Where what the ball touches would meet, if it is not in the open.
+  return is_in_gap(c + n * std::min(r_ / std::max(half_cosine, kLeastCosine), 0.5 * (r_ + end)));
+}
+
+bool DistantCreases::is_in_gap(Vec3d x) const {
+  double nearest = r_;
+  Vec3d foot;
+  const SurfaceTriangle* at = nullptr;
+  surface_.for_each_near(x - Vec3d(r_), x + Vec3d(r_), [&](const SurfaceTriangle& t) {
+    const Vec3d y = nearest_on_triangle(x, t);
+    const double distance = length(x - y);
+    if (distance >= nearest) return;
+    nearest = distance;
+    foot = y;
+    at = &t;
+  });
+  return at != nullptr && is_between_walls(surface_, x, 2 * r_) &&
+         gets_stuck(surface_, foot, normal_of(*at), at->region, r_ - tolerance_);
 }
 
 void DistantCreases::add_of_edge(std::uint32_t edge, CreaseCutter& cutter,

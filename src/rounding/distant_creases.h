@@ -2,7 +2,7 @@
 // What       Balls that come out of a groove roll over its rims: over those of facets beside its end, too, and where
 //            two grooves, or posts, are near to each other, over both. Each pair of features that one ball may touch
 //            gives a curve (crease_curve.h, equidistant_curve.h). A ball on both lips of a passage that it can't pass
-//            has none if another has room behind it: what is between stays (thin_walls.h, open_mouths.h).
+//            has none if another has room behind it, or gets stuck: what is there stays (open_mouths.h, thin_walls.h).
 // In / Out   coordinates relative to the solid's centre
 // Limits     of curves most of which is buried, what is shorter than a sixteenth, or a tenth of the radius, may be
 //            missed
@@ -45,6 +45,7 @@ class DistantCreases {
 
   [[nodiscard]] bool is_buried(const CreaseCurve& curve) const;
   [[nodiscard]] bool is_on_lips(const CreaseCurve& curve) const;
+  [[nodiscard]] bool is_in_gap(Vec3d x) const;
 
   const ConcaveFeatures& features_;
   const SolidSurface& surface_;
