@@ -30,6 +30,8 @@ constexpr double kOnSurface = 1e-4;
 constexpr double kStraightOut = 1 - 1e-10;
 // Of the radius: so far beside a face it is asked in the nearest place of it. More than a cell of StuckPlaces.
 constexpr double kBesideFace = 0.25;
+// Of the radius: triangles as near as another to a place, and how far from their edges they are asked.
+constexpr double kSameDistance = 1e-6, kFromEdge = 1.0 / 32;
 // Of the radius: most ways through a void are shorter.
 constexpr double kShortWay = 4;
 // Of a way that should lie in a void: how many radii beneath the surface it may not be, and by how many it is looked
@@ -99,7 +101,9 @@ bool CreasedSolid::is_kept(const MeshPlace& at, Vec3d x, Vec3d normal, std::uint
 bool CreasedSolid::stays(Vec3d x, Vec3d normal, std::uint32_t region, double r) const {
   if (surface.is_firm(region) || mouths.hold(surface, x)) return true;
   if (!is_between_walls(surface, x - normal * r, 2 * r)) return false;
-  return stuck.at(x, normal, region, [&](Vec3d y) { return gets_stuck_at(y, normal, region); });
+  const std::optional<bool> known =
+      stuck.at(x, normal, region, [&](Vec3d y) { return gets_stuck_at(y, region); });
+  return known ? *known : gets_stuck(surface, x, normal, region, r - tolerance);
 }
 
 bool CreasedSolid::stays_at_edge(Vec3d x, Vec3d out, std::uint32_t region, double r) const {
@@ -108,21 +112,30 @@ bool CreasedSolid::stays_at_edge(Vec3d x, Vec3d out, std::uint32_t region, doubl
          gets_stuck(surface, x, out, region, r - tolerance);
 }
 
-StuckPlaces::Answer CreasedSolid::gets_stuck_at(Vec3d x, Vec3d normal, std::uint32_t region) const {
+// The same to the last bits, nearly, from wherever it is asked: of a triangle that does not hang on these, and not on
+// an edge, where balls begin to grow as rounding errors will.
+StuckPlaces::Answer CreasedSolid::gets_stuck_at(Vec3d x, std::uint32_t region) const {
   using Answer = StuckPlaces::Answer;
-  double nearest = kBesideFace * radius;
-  std::optional<Vec3d> place;
-  surface.for_each_near(x - Vec3d(nearest), x + Vec3d(nearest), [&](const SurfaceTriangle& t) {
+  const Vec3d reach(kBesideFace * radius);
+  double least = reach.x;
+  std::vector<std::pair<const SurfaceTriangle*, double>> of_face;  // with their distances
+  surface.for_each_near(x - reach, x + reach, [&](const SurfaceTriangle& t) {
     if (t.region != region) return;
-    const Vec3d y = nearest_on_triangle(x, t);
-    const double distance = length(x - y);
-    if (distance >= nearest) return;
-    nearest = distance;
-    place = y;
+    of_face.emplace_back(&t, length(x - nearest_on_triangle(x, t)));
+    least = std::min(least, of_face.back().second);
   });
-  if (!place) return Answer::not_on_face;
-  const double least = field.at(*place) - tolerance;
-  return gets_stuck(surface, *place, normal, region, least) ? Answer::yes : Answer::no;
+  const SurfaceTriangle* first = nullptr;
+  for (const auto& [t, distance] : of_face) {
+    const bool is_nearest = distance <= least + kSameDistance * radius;
+    if (is_nearest && (first == nullptr || t < first)) first = t;
+  }
+  if (first == nullptr || least == reach.x) return Answer::not_on_face;
+  const Vec3d edge = nearest_on_triangle(x, *first);
+  const Vec3d inward = (first->p0 + first->p1 + first->p2) / 3.0 - edge;
+  const double way = length(inward), most = kFromEdge * radius;
+  const Vec3d place = way > most ? edge + inward * (most / way) : edge + inward;
+  const double r = field.at(place) - tolerance;
+  return gets_stuck(surface, place, normal_of(*first), region, r) ? Answer::yes : Answer::no;
 }
 
 VoidCrossing CreasedSolid::cross_void(Vec3d x, Vec3d direction) const {

@@ -85,9 +85,8 @@ struct CreasedSolid {
   [[nodiscard]] bool stays(Vec3d x, Vec3d normal, std::uint32_t region, double r) const;
   // The same of an edge, whose balls lie in another direction.
   [[nodiscard]] bool stays_at_edge(Vec3d x, Vec3d out, std::uint32_t region, double r) const;
-  // Whether a ball gets stuck that touches a face at a place of its plane, or at the nearest one of the face.
-  [[nodiscard]] StuckPlaces::Answer gets_stuck_at(Vec3d x, Vec3d normal,
-                                                  std::uint32_t region) const;
+  // Whether a ball gets stuck that touches a face near a place of its plane.
+  [[nodiscard]] StuckPlaces::Answer gets_stuck_at(Vec3d x, std::uint32_t region) const;
   // Where a way through the void comes to material that stays; nothing: nowhere before the pipe, or the exit.
   [[nodiscard]] std::optional<PipeHit> first_material(Vec3d x, Vec3d direction,
                                                       const VoidCrossing& crossing) const;

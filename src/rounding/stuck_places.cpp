@@ -31,17 +31,25 @@ StuckPlaces::StuckPlaces(double radius, double area)
   bits_ = std::clamp(int(std::ceil(std::log2(std::max(places, 1.0)))), kLeastBits, kMostBits);
 }
 
-// Nearly the same for normals that are computed in other ways.
-std::array<Vec3d, 2> StuckPlaces::axes_across(Vec3d normal) {
-  const auto coarse = [](double x) { return float(std::round(x * kNormalSteps) / kNormalSteps); };
+// Nearly the same for normals that are computed in other ways. The frame jumps between 0 and −0.
+StuckPlaces::Axes StuckPlaces::axes_across(Vec3d normal) {
+  const auto coarse = [](double x) {
+    return float(std::round(x * kNormalSteps) / kNormalSteps + 0.0);
+  };
   const Vec3f about(coarse(normal.x), coarse(normal.y), coarse(normal.z));
   const Vec3d u = normalize(cross(Vec3d(make_frame(normalize(about)).tangent), normal));
-  return {u, cross(normal, u)};
+  return {about, u, cross(normal, u)};
 }
 
-std::uint64_t StuckPlaces::hash_of(std::uint32_t face, const std::array<double, 2>& cell) {
-  const std::uint64_t first = mixed(face ^ mixed(std::bit_cast<std::uint64_t>(cell[0] + 0.0)));
-  return mixed(first ^ std::bit_cast<std::uint64_t>(cell[1] + 0.0));  // −0 is 0
+std::uint64_t StuckPlaces::hash_of(std::uint32_t face, const Axes& axes,
+                                   const std::array<double, 2>& cell) {
+  std::uint64_t hash = face;
+  for (const float x : {axes.about.x, axes.about.y, axes.about.z}) {
+    hash = mixed(hash ^ std::bit_cast<std::uint32_t>(x));
+  }
+  for (const double x : cell)
+    hash = mixed(hash ^ std::bit_cast<std::uint64_t>(x + 0.0));  // -0 is 0
+  return hash;
 }
 
 std::atomic<std::uint64_t>& StuckPlaces::entry_of(std::uint64_t hash) const {

@@ -13,6 +13,7 @@
 #include <cstdint>
 #include <memory>
 #include <mutex>
+#include <optional>
 
 #include "arris/math.h"
 
@@ -25,12 +26,14 @@ class StuckPlaces {
   // area: of all faces.
   StuckPlaces(double radius, double area);
 
-  // is_stuck: whether balls get stuck at a place of the face's plane, or at the nearest one of the face.
+  // is_stuck: whether balls get stuck at a place of the face near one of its plane.
   enum class Answer : std::uint8_t { no, yes, not_on_face };
+  // Nothing: the places around x don't agree.
   template <class IsStuck>
-  [[nodiscard]] bool at(Vec3d x, Vec3d normal, std::uint32_t face, const IsStuck& is_stuck) const {
-    const std::array<Vec3d, 2> axes = axes_across(normal);
-    const double along_u = dot(x, axes[0]) / spacing_, along_v = dot(x, axes[1]) / spacing_;
+  [[nodiscard]] std::optional<bool> at(Vec3d x, Vec3d normal, std::uint32_t face,
+                                       const IsStuck& is_stuck) const {
+    const Axes axes = axes_across(normal);
+    const double along_u = dot(x, axes.u) / spacing_, along_v = dot(x, axes.v) / spacing_;
     const double u0 = std::floor(along_u), v0 = std::floor(along_v);
     const Answer first = at_vertex(x, axes, {u0, v0}, face, is_stuck);
     const auto agrees = [&](double du, double dv) {
@@ -39,7 +42,7 @@ class StuckPlaces {
     if (first != Answer::not_on_face && agrees(1, 0) && agrees(0, 1) && agrees(1, 1)) {
       return first == Answer::yes;
     }
-    return is_stuck(x) == Answer::yes;
+    return std::nullopt;
   }
 
  private:
@@ -49,28 +52,30 @@ class StuckPlaces {
         entries;  // a hash, and an answer in its lowest bits
   };
 
+  struct Axes {
+    Vec3f about;  // the normal, nearly
+    Vec3d u, v;   // of the grid
+  };
+
   template <class IsStuck>
-  [[nodiscard]] Answer at_vertex(Vec3d x, const std::array<Vec3d, 2>& axes,
-                                 const std::array<double, 2>& cell, std::uint32_t face,
-                                 const IsStuck& is_stuck) const {
-    const std::uint64_t hash = hash_of(face, cell);
+  [[nodiscard]] Answer at_vertex(Vec3d x, const Axes& axes, const std::array<double, 2>& cell,
+                                 std::uint32_t face, const IsStuck& is_stuck) const {
+    const std::uint64_t hash = hash_of(face, axes, cell);
     std::atomic<std::uint64_t>& entry = entry_of(hash);
     const std::uint64_t known = entry.load(std::memory_order_relaxed);
     if ((known & ~kAnswerBits) == (hash & ~kAnswerBits) && (known & kAnswerBits) != 0) {
       return Answer((known & kAnswerBits) - 1);
     }
-    Vec3d place = x;
-    for (std::size_t i = 0; i < 2; ++i) {
-      place += axes[i] * (cell[i] * spacing_ - dot(x, axes[i]));
-    }
-    const Answer answer = is_stuck(place);
+    const Answer answer = is_stuck(x + axes.u * (cell[0] * spacing_ - dot(x, axes.u)) +
+                                   axes.v * (cell[1] * spacing_ - dot(x, axes.v)));
     entry.store((hash & ~kAnswerBits) | (std::uint64_t(answer) + 1), std::memory_order_relaxed);
     return answer;
   }
   static constexpr std::uint64_t kAnswerBits = 3;  // 0: nothing is known
 
-  [[nodiscard]] static std::array<Vec3d, 2> axes_across(Vec3d normal);
-  [[nodiscard]] static std::uint64_t hash_of(std::uint32_t face, const std::array<double, 2>& cell);
+  [[nodiscard]] static Axes axes_across(Vec3d normal);
+  [[nodiscard]] static std::uint64_t hash_of(std::uint32_t face, const Axes& axes,
+                                             const std::array<double, 2>& cell);
   [[nodiscard]] std::atomic<std::uint64_t>& entry_of(std::uint64_t hash) const;
 
   double spacing_ = 0;
