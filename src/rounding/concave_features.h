@@ -44,6 +44,16 @@ struct ConcaveCorner {
   [[nodiscard]] std::vector<CurveBound> bounds() const;
 };
 
+// Of two edges or corners.
+template <class A, class B>
+std::vector<CurveBound> bounds_of(const A& a, const B& b) {
+  const auto of_a = a.bounds();
+  const auto of_b = b.bounds();
+  std::vector<CurveBound> bounds(of_a.begin(), of_a.end());
+  bounds.insert(bounds.end(), of_b.begin(), of_b.end());
+  return bounds;
+}
+
 struct ConcaveFeatures {
   std::vector<ConcaveEdge> edges;
   std::vector<ConcaveCorner> corners;

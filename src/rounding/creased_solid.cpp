@@ -98,18 +98,15 @@ bool CreasedSolid::is_kept(const MeshPlace& at, Vec3d x, Vec3d normal, std::uint
          stays(x, normal, region, r);
 }
 
-bool CreasedSolid::stays(Vec3d x, Vec3d normal, std::uint32_t region, double r) const {
+bool CreasedSolid::stays(Vec3d x, Vec3d normal, std::uint32_t region, double r,
+                         bool is_at_edge) const {
   if (surface.is_firm(region) || mouths.hold(surface, x)) return true;
   if (!is_between_walls(surface, x - normal * r, 2 * r)) return false;
-  const std::optional<bool> known =
-      stuck.at(x, normal, region, [&](Vec3d y) { return gets_stuck_at(y, region); });
+  std::optional<bool> known;
+  if (!is_at_edge) {
+    known = stuck.at(x, normal, region, [&](Vec3d y) { return gets_stuck_at(y, region); });
+  }
   return known ? *known : gets_stuck(surface, x, normal, region, r - tolerance);
-}
-
-bool CreasedSolid::stays_at_edge(Vec3d x, Vec3d out, std::uint32_t region, double r) const {
-  if (surface.is_firm(region) || mouths.hold(surface, x)) return true;
-  return is_between_walls(surface, x - out * r, 2 * r) &&
-         gets_stuck(surface, x, out, region, r - tolerance);
 }
 
 // The same to the last bits, nearly, from wherever it is asked: of a triangle that does not hang on these, and not on
@@ -222,24 +219,14 @@ bool CreasedSolid::is_beneath(Vec3d x, double radii) const {
     within = within || distance_to_balls(part, x) < least;
   });
   if (within || mouths.hold(surface, x)) return true;
-  double nearest = radius;
-  Vec3d foot;
-  const SurfaceTriangle* at = nullptr;
-  surface.for_each_near(x - Vec3d(radius), x + Vec3d(radius), [&](const SurfaceTriangle& t) {
-    const Vec3d y = nearest_on_triangle(x, t);
-    const double distance = length(x - y);
-    if (distance >= nearest) return;
-    nearest = distance;
-    foot = y;
-    at = &t;
-  });
-  if (at == nullptr) return true;
+  const auto nearest = surface.nearest(x, radius);
+  if (!nearest) return true;
+  const auto& [t, foot, distance] = *nearest;
   const double r = field.at(foot);
-  if (nearest < std::max(kOnSurface, radii) * radius || r <= tolerance) return false;
-  const Vec3d out = (foot - x) / nearest;
-  if (!surface.is_near(foot - out * r, r - tolerance, at->region)) return true;
-  const bool is_in_face = dot(out, normal_of(*at)) > kStraightOut;
-  return is_in_face ? stays(foot, out, at->region, r) : stays_at_edge(foot, out, at->region, r);
+  if (distance < std::max(kOnSurface, radii) * radius || r <= tolerance) return false;
+  const Vec3d out = (foot - x) / distance;
+  return !surface.is_near(foot - out * r, r - tolerance, t->region) ||
+         stays(foot, out, t->region, r, dot(out, normal_of(*t)) <= kStraightOut);
 }
 
 std::optional<EdgeBlend> CreasedSolid::blend_at(Vec3d x, Vec3d normal) const {

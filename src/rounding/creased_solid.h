@@ -81,10 +81,10 @@ struct CreasedSolid {
            mouths.bytes();
   }
 
-  // Whether a place of a face that no ball of the radius r can touch stays all the same.
-  [[nodiscard]] bool stays(Vec3d x, Vec3d normal, std::uint32_t region, double r) const;
-  // The same of an edge, whose balls lie in another direction.
-  [[nodiscard]] bool stays_at_edge(Vec3d x, Vec3d out, std::uint32_t region, double r) const;
+  // Whether a place of a face that no ball of the radius r can touch stays all the same; at an edge, balls may lie in
+  // another direction than the face's.
+  [[nodiscard]] bool stays(Vec3d x, Vec3d normal, std::uint32_t region, double r,
+                           bool is_at_edge = false) const;
   // Whether a ball gets stuck that touches a face near a place of its plane.
   [[nodiscard]] StuckPlaces::Answer gets_stuck_at(Vec3d x, std::uint32_t region) const;
   // Where a way through the void comes to material that stays; nothing: nowhere before the pipe, or the exit.

@@ -360,11 +360,8 @@ class CreaseFinder {
         cutter.set_features({{{e.p0, e.p1}, {f.p0, f.p1}}}, {});
         for (const CreaseCurve& curve :
              edge_edge_creases(corner.point, e.direction, f.direction, r_)) {
-          std::vector<CurveBound> bounds;
-          for (const CurveBound& bound : e.bounds()) bounds.push_back(bound);
-          for (const CurveBound& bound : f.bounds()) bounds.push_back(bound);
           cutter.cut(
-              curve, bounds,
+              curve, bounds_of(e, f),
               [&](Vec3d x) {
                 return e.is_touched_from(x, tolerance_) && f.is_touched_from(x, tolerance_);
               },

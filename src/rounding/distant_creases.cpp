@@ -120,9 +120,7 @@ std::vector<CreaseCurve> DistantCreases::curves_of(const ConcaveEdge& a,
 template <class A, class B>
 void DistantCreases::cut(const std::vector<CreaseCurve>& curves, const A& a, const B& b,
                          CreaseCutter& cutter, std::vector<CreaseCurve>& out) const {
-  std::vector<CurveBound> bounds;
-  for (const CurveBound& bound : a.bounds()) bounds.push_back(bound);
-  for (const CurveBound& bound : b.bounds()) bounds.push_back(bound);
+  const std::vector<CurveBound> bounds = bounds_of(a, b);
   std::vector<CreaseCurve> found;
   const auto belongs = [&](Vec3d x) {
     return a.is_touched_from(x, tolerance_) && b.is_touched_from(x, tolerance_);
@@ -165,19 +163,10 @@ bool DistantCreases::is_on_lips(const CreaseCurve& curve) const {
 }
 
 bool DistantCreases::is_in_gap(Vec3d x) const {
-  double nearest = r_;
-  Vec3d foot;
-  const SurfaceTriangle* at = nullptr;
-  surface_.for_each_near(x - Vec3d(r_), x + Vec3d(r_), [&](const SurfaceTriangle& t) {
-    const Vec3d y = nearest_on_triangle(x, t);
-    const double distance = length(x - y);
-    if (distance >= nearest) return;
-    nearest = distance;
-    foot = y;
-    at = &t;
-  });
-  return at != nullptr && is_between_walls(surface_, x, 2 * r_) &&
-         gets_stuck(surface_, foot, normal_of(*at), at->region, r_ - tolerance_);
+  const auto at = surface_.nearest(x, r_);
+  return at && is_between_walls(surface_, x, 2 * r_) &&
+         gets_stuck(surface_, at->place, normal_of(*at->triangle), at->triangle->region,
+                    r_ - tolerance_);
 }
 
 void DistantCreases::add_of_edge(std::uint32_t edge, CreaseCutter& cutter,

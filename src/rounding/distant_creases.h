@@ -5,7 +5,7 @@
 //            has none if another has room behind it, or gets stuck: what is there stays (open_mouths.h, thin_walls.h).
 // In / Out   coordinates relative to the solid's centre
 // Limits     of curves most of which is buried, what is shorter than a sixteenth, or a tenth of the radius, may be
-//            missed
+//            missed; room behind lips is looked for within eight radii
 // Cost       about linear in the pairs within 2 r of each other that lie beneath one another's planes
 #pragma once
 

@@ -82,6 +82,17 @@ bool SolidSurface::is_near(Vec3d x, double distance, std::uint32_t but_region) c
   });
 }
 
+std::optional<SolidSurface::NearestPlace> SolidSurface::nearest(Vec3d x, double within) const {
+  NearestPlace found{nullptr, {}, within};
+  for_each_near(x - Vec3d(within), x + Vec3d(within), [&](const SurfaceTriangle& t) {
+    const Vec3d place = nearest_on_triangle(x, t);
+    const double distance = length(x - place);
+    if (distance < found.distance) found = {&t, place, distance};
+  });
+  if (found.triangle == nullptr) return std::nullopt;
+  return found;
+}
+
 bool SolidSurface::is_one_near(std::span<const std::uint32_t> triangles, Vec3d x, double distance,
                                std::uint32_t but_region) const {
   return std::any_of(triangles.begin(), triangles.end(), [&](std::uint32_t i) {

@@ -7,6 +7,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <utility>
 #include <vector>
@@ -120,6 +121,13 @@ class SolidSurface {
   // The same of these alone, by their place in triangles(); none is of that region.
   [[nodiscard]] bool is_one_near(std::span<const std::uint32_t> triangles, Vec3d x, double distance,
                                  std::uint32_t but_region) const;
+  // The nearest place of the surface within a distance.
+  struct NearestPlace {
+    const SurfaceTriangle* triangle;
+    Vec3d place;
+    double distance;
+  };
+  [[nodiscard]] std::optional<NearestPlace> nearest(Vec3d x, double within) const;
   // Whether a firm triangle reaches into a box.
   [[nodiscard]] bool has_firm_near(Vec3d low, Vec3d high) const {
     return has_firm() && tree_.any_near(low, high, [&](std::uint32_t i) {
