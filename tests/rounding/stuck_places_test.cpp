@@ -29,7 +29,7 @@ void compare(const TriangleSoup& mesh, double radius, Random& rng, Tally& tally)
   ASSERT_EQ(rounding.data().creased.size(), 1U);
   const CreasedSolid& solid = *rounding.data().creased[0];
   const auto& triangles = solid.surface.triangles();
-  for (int i = 0; i < 3000; ++i) {
+  for (int i = 0; i < 20000; ++i) {
     const SurfaceTriangle& t =
         triangles[std::size_t(uniform_int(rng, 0, int(triangles.size()) - 1))];
     double u = uniform(rng, 0, 1), v = uniform(rng, 0, 1);
@@ -70,8 +70,8 @@ TEST(StuckPlaces, are_what_is_found_in_the_place_itself) {
   }
   EXPECT_GT(tally.stuck, 500);
   EXPECT_GT(tally.places - tally.stuck, 300);
-  // Within a cell of a border that three of its corners don't see.
-  EXPECT_LE(300 * tally.wrong, tally.places)
+  // Within a cell of a border that its corners don't see: 1 in 15,000 measured, 1 in 4,500 if cells of two frames are one.
+  EXPECT_LE(6000 * tally.wrong, tally.places)
       << tally.wrong << " of " << tally.places << " stuck " << tally.stuck;
 }
 
