@@ -70,7 +70,8 @@ TEST(StuckPlaces, are_what_is_found_in_the_place_itself) {
   }
   EXPECT_GT(tally.stuck, 500);
   EXPECT_GT(tally.places - tally.stuck, 300);
-  // Within a cell of a border that its corners don't see: 1 in 15,000 measured, 1 in 4,500 if cells of two frames are one.
+  // Within a cell of a border that its corners don't see: 1 in 15,000 measured, 1 in 4,500 if cells of two frames are
+  // one.
   EXPECT_LE(6000 * tally.wrong, tally.places)
       << tally.wrong << " of " << tally.places << " stuck " << tally.stuck;
 }
