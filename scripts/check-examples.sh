@@ -41,6 +41,7 @@ for edges in convex concave both; do
   for radius in 0.001 0.08 0.2; do
     build/check/host_renderer/host_renderer --furnace "$radius" --edges "$edges"
   done
+  build/check/host_renderer/host_renderer --furnace 0.05 --edges "$edges" --vary
   build/check/host_renderer/host_renderer "$out/host-$edges.ppm" 0.08 320 4 --edges "$edges"
   [ "$(stat --format=%s "$out/host-$edges.ppm")" -eq $((320 * 180 * 3 + 15)) ]
 done

@@ -1,9 +1,11 @@
 // host_renderer — a small path tracer over Embree that hosts Arris's rounding
 // What       makes a few solids, rounds them, and renders them under a sky. It knows nothing of Arris but
 //            arris/rounding.h and arris/math.h; what a host has to do is in World::trace().
-// Usage      host_renderer PICTURE.ppm [RADIUS [WIDTH [SAMPLES]]] [--edges convex|concave|both]
-//            host_renderer --furnace [RADIUS] [--edges …]: all solids white under a white sky. Every path
+// Usage      host_renderer PICTURE.ppm [RADIUS [WIDTH [SAMPLES]]] [--edges convex|concave|both] [--vary]
+//            host_renderer --furnace [RADIUS] [--edges …] [--vary]: all solids white under a white sky. Every path
 //            must find its way out; exits 1 if the rounding lets one into a solid.
+//            --vary: edges on the ground stay sharp, concave ones and those of the upper cube have radii of their
+//            own. What could not be rounded as asked is printed.
 #include <embree3/rtcore.h>
 
 #include <algorithm>
@@ -452,31 +454,67 @@ void save_ppm(const Film& film, const PictureSettings& settings, const std::stri
 struct Rounded {
   double radius = 0.08;
   RoundEdges edges = RoundEdges::convex;
+  bool is_varied = false;
 };
+
+// The first rule that an edge matches gives its radius.
+arris::RoundingOptions options_of(const Rounded& rounded) {
+  arris::RoundingOptions options;
+  options.radius = rounded.radius;
+  options.edges = rounded.edges;
+  if (!rounded.is_varied) {
+    return options;
+  }
+  constexpr double kFar = 100;
+  arris::EdgeRule ground, concave, upper;
+  ground.radius = 0;
+  ground.kind = RoundEdges::convex;
+  ground.box = {Vec3d(-kFar, -kFar, -1e-3), Vec3d(kFar, kFar, 1e-3)};
+  concave.radius = 0.75 * rounded.radius;
+  concave.kind = RoundEdges::concave;
+  upper.radius = 1.5 * rounded.radius;
+  upper.box = {Vec3d(-kFar, -kFar, 0.9), Vec3d(kFar, kFar, kFar)};
+  options.rules = {ground, concave, upper};
+  // Edges without room get a smaller radius instead of staying sharp.
+  options.on_overlap = arris::OnOverlap::clamp;
+  return options;
+}
+
+void print_report(const arris::RoundingReport& report, const std::string& name) {
+  for (const arris::RoundingNote& note : report.notes) {
+    std::fprintf(stderr, "%s: %s\n", name.c_str(), note.text().c_str());
+  }
+  for (const arris::ClampedEdge& edge : report.clamped) {
+    std::fprintf(stderr, "%s: %g,%g,%g to %g,%g,%g: radius %g\n", name.c_str(), edge.from.x,
+                 edge.from.y, edge.from.z, edge.to.x, edge.to.y, edge.to.z, edge.radius);
+  }
+}
 
 // A floor, two cubes side by side with a third on top, a hexagonal plate and a pyramid's stump, a bracket and a plate
 // with a boss, apart by `gap`: at 0 they touch, and the two cubes share a face.
 std::vector<Object> make_objects(const Rounded& rounded, double gap) {
   std::vector<Object> objects;
-  const auto add = [&](Mesh mesh, Vec3d albedo) {
+  const auto add = [&](const char* name, Mesh mesh, Vec3d albedo) {
     Object object{std::move(mesh), albedo, std::nullopt};
-    object.rounding =
-        arris::make_rounding({object.mesh.positions, object.mesh.triangles},
-                             {.radius = rounded.radius, .edges = rounded.edges}, "solid");
+    object.rounding = arris::make_rounding({object.mesh.positions, object.mesh.triangles},
+                                           options_of(rounded), name);
+    print_report(object.rounding->report(), name);
     objects.push_back(std::move(object));
   };
-  add(make_cube({0, 0, -8 - gap}, 8), Vec3d(0.5));
-  add(make_cube({-0.5, 0, 0}, 1), {0.7, 0.25, 0.15});
-  add(make_cube({0.5 + gap, 0, 0}, 1), {0.75, 0.6, 0.2});
-  add(make_cube({0, 0, 1 + gap}, 0.7), {0.2, 0.35, 0.6});
-  add(make_solid(
+  add("ground", make_cube({0, 0, -8 - gap}, 8), Vec3d(0.5));
+  add("left cube", make_cube({-0.5, 0, 0}, 1), {0.7, 0.25, 0.15});
+  add("right cube", make_cube({0.5 + gap, 0, 0}, 1), {0.75, 0.6, 0.2});
+  add("upper cube", make_cube({0, 0, 1 + gap}, 0.7), {0.2, 0.35, 0.6});
+  add("plate",
+      make_solid(
           {make_polygon(6, {1.75, -0.35, 0}, 0.55), make_polygon(6, {1.75, -0.35, 0.5}, 0.55)}),
       {0.6, 0.6, 0.62});
-  add(make_solid(
+  add("stump",
+      make_solid(
           {make_polygon(5, {-1.8, -0.2, 0}, 0.65), make_polygon(5, {-1.8, -0.2, 1.2}, 0.26)}),
       {0.25, 0.5, 0.3});
-  add(make_bracket({-0.35, -0.8, 0}, 0.9, 0.25, 0.45), {0.55, 0.45, 0.6});
-  add(make_boss({1.1, -1.55, 0}), {0.6, 0.5, 0.4});
+  add("bracket", make_bracket({-0.35, -0.8, 0}, 0.9, 0.25, 0.45), {0.55, 0.45, 0.6});
+  add("boss", make_boss({1.1, -1.55, 0}), {0.6, 0.5, 0.4});
   return objects;
 }
 
@@ -505,13 +543,14 @@ int run(std::vector<std::string> arguments) {
     rounded.edges = parse_edges(option[1]);
     arguments.erase(option, option + 2);
   }
+  rounded.is_varied = std::erase(arguments, "--vary") > 0;
   const auto number = [&](std::size_t at, double otherwise) {
     return at < arguments.size() ? std::stod(arguments[at]) : otherwise;
   };
   if (arguments.empty()) {
     std::fputs(
         "usage: host_renderer PICTURE.ppm|--furnace [RADIUS [WIDTH [SAMPLES]]] "
-        "[--edges convex|concave|both]\n",
+        "[--edges convex|concave|both] [--vary]\n",
         stderr);
     return 2;
   }

@@ -69,6 +69,19 @@ BoxTree::BoxTree(std::vector<Box> boxes) {
   if (!boxes.empty()) build(boxes);
 }
 
+std::vector<std::uint32_t> BoxTree::renumber() {
+  constexpr std::uint32_t kNoNumber = 0xffffffff;
+  std::vector<std::uint32_t> number(items_.size(), kNoNumber), old;
+  for (std::uint32_t& item : items_) {
+    if (number[item] == kNoNumber) {
+      number[item] = std::uint32_t(old.size());
+      old.push_back(item);
+    }
+    item = number[item];
+  }
+  return old;
+}
+
 bool BoxTree::reaches(const Node& node, const SlabBounds& slab) {
   const Vec3d& n = slab.normal;
   const double middle = dot(n, node.middle);

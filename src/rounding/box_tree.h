@@ -74,6 +74,10 @@ class BoxTree {
     return any_where([&](const Node& node) { return is_met(node, origin, inverse, begin, end); },
                      is_it);
   }
+  [[nodiscard]] bool is_empty() const { return items_.empty(); }
+  // Gives the items, which are 0, 1, … and each in some box, numbers in the order of the tree, so that what lies
+  // together in space may do so in memory. Returns the old number of each.
+  std::vector<std::uint32_t> renumber();
   [[nodiscard]] std::size_t bytes() const {
     return nodes_.size() * sizeof(Node) + items_.size() * sizeof(std::uint32_t);
   }

@@ -17,16 +17,10 @@ struct Span {
   double t0, t1;
 };
 
-struct Segment {
-  Vec3d p0, p1, axis;  // axis: unit, or 0 if it has no extent
-  double extent;
-  double radius, growth;  // at p0, and by the way along the axis
-};
-
 // Where a line is within r of a segment: the two are convex.
-std::optional<Span> meet_capsule(Vec3d origin, Vec3d direction, const Segment& segment, double r) {
-  const Vec3d& axis = segment.axis;
-  const Vec3d m = origin - segment.p0;
+std::optional<Span> meet_capsule(Vec3d origin, Vec3d direction, const ChordBalls& chord, double r) {
+  const Vec3d& axis = chord.axis;
+  const Vec3d m = origin - chord.p0;
   const double dd = length_squared(direction);
   const Vec3d normal = cross(direction, axis);
   const double apart = dot(m, normal), a = length_squared(normal);
@@ -48,13 +42,13 @@ std::optional<Span> meet_capsule(Vec3d origin, Vec3d direction, const Segment& s
     int sides = 0;
     for (const double t : {-b - half, -b + half}) {
       const double at = s0 + speed * t;
-      if (at < 0 || at > segment.extent) continue;
+      if (at < 0 || at > chord.extent) continue;
       add(t, t);
       ++sides;
     }
     if (sides == 2) return all;
   }
-  for (const Vec3d center : {segment.p0, segment.p1}) {
+  for (const Vec3d center : {chord.p0, chord.p1}) {
     const Vec3d from = origin - center;
     const double b = dot(from, direction) / dd;
     const double d = length_squared(from - direction * b);
@@ -67,8 +61,8 @@ std::optional<Span> meet_capsule(Vec3d origin, Vec3d direction, const Segment& s
 
 // The same for balls whose radius grows along the segment: where a line meets the cone that touches all of them,
 // |x − c| = radius + growth s across its sides, or the balls at the ends.
-std::optional<Span> meet_cone(Vec3d origin, Vec3d direction, const Segment& segment) {
-  const auto& [p0, p1, axis, extent, radius, growth] = segment;
+std::optional<Span> meet_cone(Vec3d origin, Vec3d direction, const ChordBalls& chord) {
+  const auto& [p0, p1, axis, extent, radius, growth, bulge] = chord;
   std::optional<Span> all;
   const auto add = [&](double t) {
     all = all ? Span{std::min(all->t0, t), std::max(all->t1, t)} : Span{t, t};
@@ -103,10 +97,9 @@ std::optional<Span> meet_cone(Vec3d origin, Vec3d direction, const Segment& segm
   return all;
 }
 
-std::optional<Span> meet_balls(Vec3d origin, Vec3d direction, const Segment& segment,
-                               double bulge) {
-  if (segment.growth != 0) return meet_cone(origin, direction, segment);
-  return meet_capsule(origin, direction, segment, segment.radius + bulge);
+std::optional<Span> meet_balls(Vec3d origin, Vec3d direction, const ChordBalls& chord) {
+  if (chord.growth != 0) return meet_cone(origin, direction, chord);
+  return meet_capsule(origin, direction, chord, chord.radius + chord.bulge);
 }
 
 // A ray, and balls around an arc.
@@ -146,20 +139,25 @@ class ArcWay {
 }  // namespace
 
 CreasePipes::Part CreasePipes::make_part(const CreaseCurve& curve) {
-  Part part;
-  part.curve = curve;
-  part.p0 = curve.at(curve.u0);
-  part.p1 = curve.at(curve.u1);
-  part.length = length(part.p1 - part.p0);
-  if (part.length > 0) part.axis = (part.p1 - part.p0) / part.length;
-  part.radius = curve.r0;
-  if (part.length > 0) part.growth = (curve.r1 - curve.r0) / part.length;
-  if (curve.is_line) return part;
-  // An affine image of a circle's arc.
-  part.bulge = (1 - std::cos(0.5 * (curve.u1 - curve.u0))) *
-               std::sqrt(length_squared(curve.a) + length_squared(curve.b));
-  part.arc = ShortArc(curve);
-  return part;
+  return {curve, curve.is_line ? ShortArc() : ShortArc(curve)};
+}
+
+ChordBalls CreasePipes::balls_of(const CreaseCurve& part) {
+  ChordBalls balls;
+  balls.p0 = part.at(part.u0);
+  balls.p1 = part.at(part.u1);
+  balls.extent = length(balls.p1 - balls.p0);
+  balls.radius = part.r0;
+  if (balls.extent > 0) {
+    balls.axis = (balls.p1 - balls.p0) / balls.extent;
+    balls.growth = (part.r1 - part.r0) / balls.extent;
+  }
+  if (!part.is_line) {
+    // An affine image of a circle's arc.
+    balls.bulge = (1 - std::cos(0.5 * (part.u1 - part.u0))) *
+                  std::sqrt(length_squared(part.a) + length_squared(part.b));
+  }
+  return balls;
 }
 
 std::vector<CreasePipes::Part> CreasePipes::parts_of(std::span<const CreaseCurve> creases) {
@@ -181,44 +179,47 @@ std::vector<CreasePipes::Part> CreasePipes::parts_of(std::span<const CreaseCurve
   return parts;
 }
 
-std::vector<Box> CreasePipes::boxes_of(std::span<const Part> parts) {
+CreasePipes::CreasePipes(std::vector<CreaseCurve> creases) : creases_(std::move(creases)) {
+  const std::vector<Part> parts = parts_of(creases_);
   std::vector<Box> boxes;
   for (std::uint32_t i = 0; i < parts.size(); ++i) {
-    const Part& part = parts[i];
-    const Vec3d reach(std::max(part.curve.r0, part.curve.r1) + part.bulge);
-    boxes.push_back({min(part.p0, part.p1) - reach, max(part.p0, part.p1) + reach, i});
+    const ChordBalls balls = balls_of(parts[i].curve);
+    const Vec3d reach(std::max(parts[i].curve.r0, parts[i].curve.r1) + balls.bulge);
+    boxes.push_back({min(balls.p0, balls.p1) - reach, max(balls.p0, balls.p1) + reach, i});
   }
-  return boxes;
+  tree_ = BoxTree(std::move(boxes));
+  for (const std::uint32_t i : tree_.renumber()) {
+    parts_.push_back(parts[i]);
+    balls_.push_back(balls_of(parts[i].curve));
+  }
 }
 
-CreasePipes::CreasePipes(std::vector<CreaseCurve> creases)
-    : creases_(std::move(creases)), parts_(parts_of(creases_)), tree_(boxes_of(parts_)) {}
-
-CreasePipes::Foot CreasePipes::foot_on(const Part& part, Vec3d x) {
-  if (!part.curve.is_line) {
-    const Turn turn = part.arc.nearest(x, {});
-    return {part.arc.at(turn), part.arc.parameter(turn)};
+CreasePipes::Foot CreasePipes::foot_on(std::uint32_t index, Vec3d x) const {
+  const auto& [curve, arc] = parts_[index];
+  if (!curve.is_line) {
+    const Turn turn = arc.nearest(x, {});
+    return {arc.at(turn), arc.parameter(turn)};
   }
-  double u = nearest_parameter(part.curve, x);
-  if (part.growth != 0) {
-    const double along = dot(x - part.p0, part.axis);
-    const double ball = nearest_ball(along, length(x - part.p0 - part.axis * along), part.growth);
-    u = part.curve.u0 + std::clamp(ball / part.length, 0.0, 1.0) * (part.curve.u1 - part.curve.u0);
+  const ChordBalls& balls = balls_[index];
+  double u = nearest_parameter(curve, x);
+  if (balls.growth != 0) {
+    const double along = dot(x - balls.p0, balls.axis);
+    const double away = length(x - balls.p0 - balls.axis * along);
+    const double ball = nearest_ball(along, away, balls.growth);
+    u = curve.u0 + std::clamp(ball / balls.extent, 0.0, 1.0) * (curve.u1 - curve.u0);
   }
-  return {part.curve.at(u), u};
+  return {curve.at(u), u};
 }
 
 std::optional<PipeHit> CreasePipes::first_entry(Vec3d origin, Vec3d direction, double end) const {
   std::optional<PipeHit> best;
   tree_.for_each_along(origin, direction, 0, end, [&](std::uint32_t i) {
-    const Part& part = parts_[i];
-    const std::optional<Span> span = meet_balls(
-        origin, direction, {part.p0, part.p1, part.axis, part.length, part.radius, part.growth},
-        part.bulge);
+    const ChordBalls& balls = balls_[i];
+    const std::optional<Span> span = meet_balls(origin, direction, balls);
     if (!span || span->t1 < 0 || span->t0 > end) return;
     double t = std::max(span->t0, 0.0);
-    if (!part.curve.is_line) {
-      const ArcWay way(part.arc, {origin, direction}, part.radius);
+    if (!parts_[i].curve.is_line) {
+      const ArcWay way(parts_[i].arc, {origin, direction}, balls.radius);
       const double last = std::min(span->t1, end);
       std::optional<PipeHit> met = way.enter(t, last);
       // One that leaves may come back where the arc bends.
@@ -228,13 +229,13 @@ std::optional<PipeHit> CreasePipes::first_entry(Vec3d origin, Vec3d direction, d
       best = met;
       return;
     }
-    const Vec3d x = origin + direction * t - part.p0;
-    double along = dot(x, part.axis);
-    if (part.growth != 0) {
-      along = nearest_ball(along, length(x - part.axis * along), part.growth);
+    const Vec3d x = origin + direction * t - balls.p0;
+    double along = dot(x, balls.axis);
+    if (balls.growth != 0) {
+      along = nearest_ball(along, length(x - balls.axis * along), balls.growth);
     }
-    const Vec3d foot = part.p0 + part.axis * std::clamp(along, 0.0, part.length);
-    const bool is_inner = along > 0 && along < part.length;
+    const Vec3d foot = balls.p0 + balls.axis * std::clamp(along, 0.0, balls.extent);
+    const bool is_inner = along > 0 && along < balls.extent;
     if (t > end) return;
     const Vec3d normal = normalize(origin + direction * t - foot);
     if (dot(normal, direction) >= 0) return;
@@ -246,21 +247,18 @@ std::optional<PipeHit> CreasePipes::first_entry(Vec3d origin, Vec3d direction, d
 
 std::optional<PipeSpan> CreasePipes::span_of(std::uint32_t index, Vec3d origin, Vec3d direction,
                                              double after) const {
-  const Part& part = parts_[index];
-  const std::optional<Span> span =
-      meet_balls(origin, direction,
-                 {part.p0, part.p1, part.axis, part.length, part.radius, part.growth}, part.bulge);
+  const std::optional<Span> span = meet_balls(origin, direction, balls_[index]);
   if (!span) return std::nullopt;
   const auto place_at = [&](double t) {
     const Vec3d x = origin + direction * t;
-    const Foot foot = foot_on(part, x);
+    const Foot foot = foot_on(index, x);
     return PipePlace{t, foot.u, normalize(x - foot.point)};
   };
-  if (part.curve.is_line) {
+  if (parts_[index].curve.is_line) {
     if (span->t1 <= after) return std::nullopt;
     return PipeSpan{place_at(span->t0), place_at(span->t1)};
   }
-  const ArcWay way(part.arc, {origin, direction}, part.radius);
+  const ArcWay way(parts_[index].arc, {origin, direction}, balls_[index].radius);
   const auto in = way.enter(std::max(span->t0, way.beyond(after)), span->t1);
   if (!in) return std::nullopt;
   return PipeSpan{place_at(in->t), place_at(way.leave(in->t))};
@@ -269,19 +267,19 @@ std::optional<PipeSpan> CreasePipes::span_of(std::uint32_t index, Vec3d origin, 
 bool CreasePipes::holds(Vec3d x, double depth) const {
   bool found = false;
   tree_.for_each_near(x, x, [&](std::uint32_t i) {
-    const Part& part = parts_[i];
-    if (found || part.growth != 0) {
-      found = found || distance_to_balls(part.curve, x) < -depth;
+    if (found || balls_[i].growth != 0) {
+      found = found || distance_to_balls(parts_[i].curve, x) < -depth;
       return;
     }
-    const double least = part.radius - depth;
-    found = length_squared(x - foot_on(part, x).point) < least * least;
+    const double least = balls_[i].radius - depth;
+    found = length_squared(x - foot_on(i, x).point) < least * least;
   });
   return found;
 }
 
 std::size_t CreasePipes::bytes() const {
-  return creases_.size() * sizeof(CreaseCurve) + parts_.size() * sizeof(Part) + tree_.bytes();
+  return creases_.size() * sizeof(CreaseCurve) +
+         parts_.size() * (sizeof(Part) + sizeof(ChordBalls)) + tree_.bytes();
 }
 
 }  // namespace arris

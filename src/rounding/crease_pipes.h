@@ -34,6 +34,14 @@ struct PipeSpan {
   PipePlace in, out;
 };
 
+// Balls along the chord of a part.
+struct ChordBalls {
+  Vec3d p0, p1, axis;  // axis: unit, along the chord, or 0 if it has no extent
+  double extent = 0;
+  double radius = 0, growth = 0;  // at p0, and by the way along the axis
+  double bulge = 0;               // of an arc above the chord
+};
+
 class CreasePipes {
  public:
   explicit CreasePipes(std::vector<CreaseCurve> creases);
@@ -56,7 +64,7 @@ class CreasePipes {
   [[nodiscard]] std::size_t part_count() const { return parts_.size(); }
   [[nodiscard]] const CreaseCurve& curve_of(std::uint32_t part) const { return parts_[part].curve; }
   // How far it lies above its chord.
-  [[nodiscard]] double bulge_of(std::uint32_t part) const { return parts_[part].bulge; }
+  [[nodiscard]] double bulge_of(std::uint32_t part) const { return balls_[part].bulge; }
   // The places between which a ray's whole line is within r of a part; of several the first that ends beyond `after`.
   [[nodiscard]] std::optional<PipeSpan> span_of(std::uint32_t index, Vec3d origin, Vec3d direction,
                                                 double after) const;
@@ -70,27 +78,23 @@ class CreasePipes {
   // A segment of a line, or a short part of an arc.
   struct Part {
     CreaseCurve curve;
-    double bulge = 0;  // of the arc above its chord
-    Vec3d p0, p1;      // ends of the chord
-    Vec3d axis;        // unit, along the chord, or 0
-    double length = 0;
-    double radius = 0, growth = 0;  // at p0; of a segment, by the way along it
-    ShortArc arc;                   // if it is no segment
+    ShortArc arc;  // if it is no segment
   };
   struct Foot {
     Vec3d point;
     double u = 0;
   };
   static Part make_part(const CreaseCurve& curve);
+  static ChordBalls balls_of(const CreaseCurve& part);
   static std::vector<Part> parts_of(std::span<const CreaseCurve> creases);
-  static std::vector<Box> boxes_of(std::span<const Part> parts);
 
   // The nearest place of a part to x.
-  [[nodiscard]] static Foot foot_on(const Part& part, Vec3d x);
+  [[nodiscard]] Foot foot_on(std::uint32_t index, Vec3d x) const;
 
   std::vector<CreaseCurve> creases_;
-  std::vector<Part> parts_;
-  BoxTree tree_;
+  std::vector<Part> parts_;        // in the tree's order
+  std::vector<ChordBalls> balls_;  // of the parts: most of what is near a ray is told by these
+  BoxTree tree_{{}};
 };
 
 }  // namespace arris

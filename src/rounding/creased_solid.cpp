@@ -32,11 +32,11 @@ constexpr double kStraightOut = 1 - 1e-10;
 constexpr double kBesideFace = 0.25;
 // Of the radius: triangles as near as another to a place, and how far from their edges they are asked.
 constexpr double kSameDistance = 1e-6, kFromEdge = 1.0 / 32;
-// Of the radius: most ways through a void are shorter.
-constexpr double kShortWay = 4;
+// Of the radius: most ways through a void are shorter; and what is shorter may be none.
+constexpr double kShortWay = 4, kLeastWay = 1e-3;
 // Of a way that should lie in a void: how many radii beneath the surface it may not be, and by how many it is looked
 // at; and about a place where it meets material, what shows how this lies.
-constexpr double kInMaterial = 0.02, kWayAtOnce = 0.1, kBesides = 0.01;
+constexpr double kInMaterial = 0.02, kWayAtOnce = 0.1, kBesides = 0.01, kBorder = 1e-6;
 constexpr int kLeastWaySteps = 4, kMostWaySteps = 64;
 // Relative to the radius: steps in which edges are looked at.
 constexpr double kEdgeStep = 0.25;
@@ -47,11 +47,11 @@ struct Border {
   Vec3d x, direction;
   double before, within;
 
+  // Found to within a distance.
   template <class IsMaterial>
-  [[nodiscard]] double find(const IsMaterial& is_material) const {
-    constexpr int kHalvings = 24;
+  [[nodiscard]] double find(double exactly, const IsMaterial& is_material) const {
     double low = before, high = within;
-    for (int i = 0; i < kHalvings; ++i) {
+    for (double left = (high - low) * length(direction); left > exactly; left *= 0.5) {
       const double middle = 0.5 * (low + high);
       (is_material(x + direction * middle) ? high : low) = middle;
     }
@@ -68,7 +68,9 @@ struct Border {
         const Border near{x + way * side, direction, t - reach, t + reach};
         const auto is_there = [&](double at) { return is_material(near.x + direction * at); };
         if (is_there(near.before) || !is_there(near.within)) continue;
-        return (near.x + direction * near.find(is_material) - (x + direction * t)) / side;
+        return (near.x + direction * near.find(kExactly * beside, is_material) -
+                (x + direction * t)) /
+               side;
       }
       return std::nullopt;
     };
@@ -78,7 +80,7 @@ struct Border {
     return dot(normal, d) < 0 ? normal : -normal;
   }
 
-  static constexpr double kSteepest = 5;
+  static constexpr double kSteepest = 5, kExactly = 1e-3;
 };
 
 }  // namespace
@@ -101,12 +103,15 @@ bool CreasedSolid::is_kept(const MeshPlace& at, Vec3d x, Vec3d normal, std::uint
 bool CreasedSolid::stays(Vec3d x, Vec3d normal, std::uint32_t region, double r,
                          bool is_at_edge) const {
   if (surface.is_firm(region) || mouths.hold(surface, x)) return true;
-  if (!is_between_walls(surface, x - normal * r, 2 * r)) return false;
+  const Vec3d c = x - normal * r;
+  if (!narrow.may_be_between_walls(surface, c, 2 * r)) return false;
   std::optional<bool> known;
   if (!is_at_edge) {
     known = stuck.at(x, normal, region, [&](Vec3d y) { return gets_stuck_at(y, region); });
   }
-  return known ? *known : gets_stuck(surface, x, normal, region, r - tolerance);
+  if (known) return *known;
+  return is_between_walls(surface, c, 2 * r) &&
+         gets_stuck(surface, x, normal, region, r - tolerance);
 }
 
 // The same to the last bits, nearly, from wherever it is asked: of a triangle that does not hang on these, and not on
@@ -131,8 +136,11 @@ StuckPlaces::Answer CreasedSolid::gets_stuck_at(Vec3d x, std::uint32_t region) c
   const Vec3d inward = (first->p0 + first->p1 + first->p2) / 3.0 - edge;
   const double way = length(inward), most = kFromEdge * radius;
   const Vec3d place = way > most ? edge + inward * (most / way) : edge + inward;
-  const double r = field.at(place) - tolerance;
-  return gets_stuck(surface, place, normal_of(*first), region, r) ? Answer::yes : Answer::no;
+  const Vec3d normal = normal_of(*first);
+  const double r = field.at(place);
+  const bool is_stuck = is_between_walls(surface, place - normal * r, 2 * r) &&
+                        gets_stuck(surface, place, normal, region, r - tolerance);
+  return is_stuck ? Answer::yes : Answer::no;
 }
 
 VoidCrossing CreasedSolid::cross_void(Vec3d x, Vec3d direction) const {
@@ -157,9 +165,13 @@ std::optional<PipeHit> CreasedSolid::first_material(Vec3d x, Vec3d direction,
   const Vec3d last = x + direction * end;
   const Vec3d low = min(x, last), high = max(x, last), reach(radius);
   if (!surface.has_firm_near(low - reach, high + reach) && !mouths.is_near(low, high) &&
-      field.is_uniform_within(low, high) &&
-      !is_between_walls(surface, (x + last) * 0.5, 2 * radius + 0.5 * length(last - x))) {
-    return std::nullopt;
+      field.is_uniform_within(low, high)) {
+    const Vec3d middle = (x + last) * 0.5;
+    const double within = 2 * radius + 0.5 * length(last - x);
+    if (!narrow.may_be_between_walls(surface, middle, within) ||
+        !is_between_walls(surface, middle, within)) {
+      return std::nullopt;
+    }
   }
   const double speed = length(direction), most = kWayAtOnce * radius / speed;
   const int steps = std::clamp(int(std::ceil(end / most)), kLeastWaySteps, kMostWaySteps);
@@ -168,13 +180,15 @@ std::optional<PipeHit> CreasedSolid::first_material(Vec3d x, Vec3d direction,
     const double t = end * i / steps;
     if (!is_material(x + direction * t)) continue;
     const Border border{x, direction, end * (i - 1) / steps, t};
-    const double at = border.find(is_material);
+    const double at = border.find(kBorder * radius, is_material);
     // What is beneath the pipe, but for the tolerance.
     if (met && (end - at) * speed <= kInMaterial * radius) return std::nullopt;
     return PipeHit{at, border.normal_at(at, kBesides * radius, is_material), true};
   }
-  // A skin, too thin to be found.
-  if (!met && is_kept(last, exit.normal, exit.region)) return PipeHit{end, -exit.normal, true};
+  // A skin, too thin to be found; unless the way began behind the face by rounding errors.
+  if (!met && length(last - x) > kLeastWay * radius && is_kept(last, exit.normal, exit.region)) {
+    return PipeHit{end, -exit.normal, true};
+  }
   return std::nullopt;
 }
 

@@ -20,6 +20,7 @@
 #include "rounding/crease_pipes.h"
 #include "rounding/crease_shape.h"
 #include "rounding/creases.h"
+#include "rounding/narrow_cells.h"
 #include "rounding/near_triangles.h"
 #include "rounding/open_mouths.h"
 #include "rounding/radius_field.h"
@@ -57,6 +58,7 @@ struct CreasedSolid {
   NearLists near;        // of those with bands, and few others near
   OpenMouths mouths;     // of the space outside
   StuckPlaces stuck;
+  NarrowCells narrow;
 
   // Which part of the balls is surface, for outlines: made on all cores when it is first asked for.
   [[nodiscard]] const CreaseShape& shape() const;

@@ -11,6 +11,8 @@ namespace {
 // Relative to its radius: what is nearer than this to the ball it touches; the same where it seems stuck; and how far
 // from its centre other things are looked for.
 constexpr double kTouches = 1.0 / 128, kTouchesFinely = 1e-5, kFar = 2;
+// Of the radius: what rounding errors add to a distance.
+constexpr double kSlack = 1e-9;
 // By the way of its centre: slower than this it grows nowhere; the same between the sides of a blade.
 constexpr double kStuck = 0.05, kStuckInBlade = 1e-4;
 // First radii are halved so often where there is no room.
@@ -109,24 +111,40 @@ class GrowingBall {
   void find_near(double distance) {
     near_.clear();
     radius_ = far_ = std::min(distance, kFar * full_);
-    const Vec3d reach(far_);
-    surface_.for_each_near(center_ - reach, center_ + reach, [&](const SurfaceTriangle& t) {
-      if (is_plainly_beyond(center_, t, far_)) return;
-      const Vec3d away = nearest_on_triangle(center_, t) - center_;
+    if (length(center_ - gathered_about_) + far_ > gathered_to_) gather();
+    for (const Plane& plane : around_) {
+      if (std::abs(dot(plane.normal, center_) - plane.d) > far_ + kSlack * full_) continue;
+      const Vec3d away = nearest_on_triangle(center_, *plane.triangle) - center_;
       const double length_away = length(away);
-      if (!(length_away < far_ && length_away > 0)) return;
+      if (!(length_away < far_ && length_away > 0)) continue;
       radius_ = std::min(radius_, length_away);
-      near_.push_back({away / length_away, length_away, &t, {}});
+      near_.push_back({away / length_away, length_away, plane.triangle, plane.normal});
+    }
+  }
+
+  // A ball takes many steps within a few radii: what is there is looked for once, or twice.
+  void gather() {
+    gathered_about_ = center_;
+    gathered_to_ = far_ + 0.5 * full_;
+    around_.clear();
+    const Vec3d reach(gathered_to_);
+    surface_.for_each_near(center_ - reach, center_ + reach, [&](const SurfaceTriangle& t) {
+      if (is_plainly_beyond(center_, t, gathered_to_)) return;
+      if (length_squared(nearest_on_triangle(center_, t) - center_) > gathered_to_ * gathered_to_)
+        return;
+      const Vec3d normal = normal_of(t);
+      around_.push_back({&t, normal, dot(normal, t.p0)});
     });
+    std::ranges::sort(around_, {}, &Plane::triangle);
+    const auto is_same = [](const Plane& a, const Plane& b) { return a.triangle == b.triangle; };
+    around_.erase(std::unique(around_.begin(), around_.end(), is_same), around_.end());
   }
 
   void take_contacts(double touching) {
     touching_ = touching;
     contacts_.clear();
     for (const Contact& c : near_) {
-      if (!touches(c)) continue;
-      contacts_.push_back(c);
-      contacts_.back().normal = normal_of(*c.triangle);
+      if (touches(c)) contacts_.push_back(c);
     }
     std::ranges::sort(contacts_, {}, &Contact::distance);
     directions_.clear();
@@ -196,6 +214,14 @@ class GrowingBall {
   Vec3d start_, center_;
   Vec3d middle_;  // of the directions to what it touches
   double full_, radius_ = 0, far_ = 0, touching_ = 0;
+  struct Plane {
+    const SurfaceTriangle* triangle;
+    Vec3d normal;
+    double d;
+  };
+  std::vector<Plane> around_;  // of what is within a distance of a place
+  Vec3d gathered_about_;
+  double gathered_to_ = 0;
   std::vector<Contact> near_, contacts_;
   std::vector<Vec3d> directions_;  // of contacts, without those on planes of others
 };

@@ -98,7 +98,8 @@ class CreasedMaker {
                        std::move(clear),
                        NearLists(lists),
                        {},
-                       StuckPlaces(r_, area)};
+                       StuckPlaces(r_, area),
+                       NarrowCells(r_, area)};
     if (in_.is_outside) {
       solid.mouths = OpenMouths(solid.surface, solid.pipes, solid.tolerance);
     }

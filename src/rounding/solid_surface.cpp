@@ -72,8 +72,11 @@ bool may_be_cut(const std::array<Vec3d, 3>& centers, Vec3d normal, const Surface
   return std::ranges::any_of(centers, [&](Vec3d c) { return dot(c - foot, away) < limit; });
 }
 
-SolidSurface::SolidSurface(std::vector<SurfaceTriangle> triangles, double reach)
-    : triangles_(std::move(triangles)), tree_(boxes_of(triangles_, reach)), reach_(reach) {}
+SolidSurface::SolidSurface(const std::vector<SurfaceTriangle>& triangles, double reach)
+    : tree_(boxes_of(triangles, reach)), reach_(reach) {
+  triangles_.reserve(triangles.size());
+  for (const std::uint32_t i : tree_.renumber()) triangles_.push_back(triangles[i]);
+}
 
 bool SolidSurface::is_near(Vec3d x, double distance, std::uint32_t but_region) const {
   return tree_.any_near(x - Vec3d(distance), x + Vec3d(distance), [&](std::uint32_t i) {
@@ -109,7 +112,7 @@ bool SolidSurface::reaches_near(const SurfaceTriangle& t, Vec3d x, double distan
 }
 
 bool SolidSurface::is_on_joined(Vec3d x, double tolerance, std::uint32_t face) const {
-  if (!is_curved()) return false;
+  if (pairs_of(joined_, face).empty()) return false;
   return tree_.any_near(x - Vec3d(tolerance), x + Vec3d(tolerance), [&](std::uint32_t i) {
     const SurfaceTriangle& t = triangles_[i];
     return is_joined(face, t.region) && length(x - nearest_on_triangle(x, t)) < tolerance;

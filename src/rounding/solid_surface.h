@@ -92,12 +92,13 @@ struct ThinWalls {
 
 class SolidSurface {
  public:
-  // reach: how far searches look about.
-  SolidSurface(std::vector<SurfaceTriangle> triangles, double reach);
+  // In any order, triangles() has another. reach: how far searches look about.
+  SolidSurface(const std::vector<SurfaceTriangle>& triangles, double reach);
 
   // joined: see smooth_reach.h
   void set_joined(std::vector<FacePair> joined) { joined_ = std::move(joined); }
   void set_walls(ThinWalls walls);
+  [[nodiscard]] bool has_walls() const { return !wall_tree_.is_empty() || !rod_tree_.is_empty(); }
   // firm: regions that stay whatever balls do; sorted.
   void set_firm(std::vector<std::uint32_t> firm) { firm_ = std::move(firm); }
   // Whether what touches a face may cut into another one.

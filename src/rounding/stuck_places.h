@@ -8,15 +8,13 @@
 #pragma once
 
 #include <array>
-#include <atomic>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <memory>
-#include <mutex>
 #include <optional>
 
 #include "arris/math.h"
+#include "rounding/answer_table.h"
 
 namespace arris {
 
@@ -47,12 +45,6 @@ class StuckPlaces {
   }
 
  private:
-  struct Table {
-    std::once_flag once;
-    std::unique_ptr<std::atomic<std::uint64_t>[]>
-        entries;  // a hash, and an answer in its lowest bits
-  };
-
   struct Axes {
     Vec3f about;  // the normal, nearly
     Vec3d u, v;   // of the grid
@@ -62,26 +54,18 @@ class StuckPlaces {
   [[nodiscard]] Answer at_vertex(Vec3d x, const Axes& axes, const std::array<double, 2>& cell,
                                  std::uint32_t face, const IsStuck& is_stuck) const {
     const std::uint64_t hash = hash_of(face, axes, cell);
-    std::atomic<std::uint64_t>& entry = entry_of(hash);
-    const std::uint64_t known = entry.load(std::memory_order_relaxed);
-    if ((known & ~kAnswerBits) == (hash & ~kAnswerBits) && (known & kAnswerBits) != 0) {
-      return Answer((known & kAnswerBits) - 1);
-    }
-    const Answer answer = is_stuck(x + axes.u * (cell[0] * spacing_ - dot(x, axes.u)) +
-                                   axes.v * (cell[1] * spacing_ - dot(x, axes.v)));
-    entry.store((hash & ~kAnswerBits) | (std::uint64_t(answer) + 1), std::memory_order_relaxed);
-    return answer;
+    return Answer(table_.answer(hash, [&] {
+      return unsigned(is_stuck(x + axes.u * (cell[0] * spacing_ - dot(x, axes.u)) +
+                               axes.v * (cell[1] * spacing_ - dot(x, axes.v))));
+    }));
   }
-  static constexpr std::uint64_t kAnswerBits = 3;  // 0: nothing is known
 
   [[nodiscard]] static Axes axes_across(Vec3d normal);
   [[nodiscard]] static std::uint64_t hash_of(std::uint32_t face, const Axes& axes,
                                              const std::array<double, 2>& cell);
-  [[nodiscard]] std::atomic<std::uint64_t>& entry_of(std::uint64_t hash) const;
 
   double spacing_ = 0;
-  int bits_ = 0;  // of the table's size
-  std::unique_ptr<Table> table_;
+  AnswerTable table_;
 };
 
 }  // namespace arris

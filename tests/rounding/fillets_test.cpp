@@ -28,7 +28,7 @@ void expect_agreement(RoundEdges edges) {
     FilletShooter shooter(solid, edges, 11);
     ASSERT_FALSE(shooter.rounding().data().filled.empty());
     FilletTally tally;
-    shooter.shoot(60, tally);
+    shooter.shoot(120, tally);
     EXPECT_GT(tally.fillets, 2);
     all.rays += tally.rays;
     all.wrong += tally.wrong;
