@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -11,6 +12,7 @@
 #include "arris/console.h"
 #include "arris/input.h"
 #include "arris/render.h"
+#include "arris/rounding.h"
 #include "arris/values.h"
 
 namespace arris::program {
@@ -19,7 +21,28 @@ namespace {
 struct Findings {
   SceneReport scene;
   PrepareStats prepare;
+  std::vector<std::optional<double>> fitting_radii;  // of the objects that lack room at some edge
 };
+
+// What is named has a little more room than it needs.
+constexpr double kOfFitting = 0.98;
+
+// In world units.
+double fitting_radius_of(const Scene& scene, const Object& object, double radius) {
+  const Mesh& mesh = scene.meshes[object.mesh.index];
+  std::vector<Vec3f> positions;
+  positions.reserve(mesh.positions.size());
+  for (const Vec3f& p : mesh.positions) {
+    positions.emplace_back(transform_point(object.world_from_object, Vec3d(p)));
+  }
+  const RoundingSettings settings =
+      object.rounding.value_or(scene.rounding.value_or(RoundingSettings{}));
+  RoundingOptions options;
+  options.radius = radius;
+  options.edges = settings.edges;
+  options.min_angle = settings.min_angle;
+  return find_fitting_radius({positions, mesh.triangles, mesh.sharp_edges}, options, object.name);
+}
 
 const RoundingSummary* find_summary(const Findings& findings, std::size_t object) {
   for (const RoundingSummary& summary : findings.prepare.rounding) {
@@ -37,7 +60,7 @@ nlohmann::ordered_json to_json(const EdgeCounts& e) {
           {"flat", e.flat},     {"boundary", e.boundary}, {"nonmanifold", e.nonmanifold}};
 }
 
-nlohmann::ordered_json to_json(const RoundingSummary& r) {
+nlohmann::ordered_json to_json(const RoundingSummary& r, std::optional<double> fitting) {
   std::vector<std::string> notes;
   for (const RoundingNote& note : r.notes) notes.push_back(note.text());
   auto clamped = nlohmann::ordered_json::array();
@@ -49,10 +72,12 @@ nlohmann::ordered_json to_json(const RoundingSummary& r) {
           {"edges", r.edges},
           {"corners", r.corners},
           {"notes", notes},
-          {"clamped", clamped}};
+          {"clamped", clamped},
+          {"fitting_radius", fitting ? nlohmann::ordered_json(*fitting) : nullptr}};
 }
 
-nlohmann::ordered_json to_json(const ObjectReport& o, const RoundingSummary* rounding) {
+nlohmann::ordered_json to_json(const ObjectReport& o, const RoundingSummary* rounding,
+                               std::optional<double> fitting) {
   nlohmann::ordered_json json{{"name", o.name}};
   if (o.csg) {
     json["csg"] = {{"primitives", o.csg->primitives},
@@ -71,7 +96,8 @@ nlohmann::ordered_json to_json(const ObjectReport& o, const RoundingSummary* rou
   }
   json["bounds"] = {{"min", to_json(o.bounds_min)}, {"max", to_json(o.bounds_max)}};
   if (!o.csg) json["degenerate_triangles"] = o.degenerate_triangles;
-  json["rounding"] = rounding != nullptr ? to_json(*rounding) : nlohmann::ordered_json(nullptr);
+  json["rounding"] =
+      rounding != nullptr ? to_json(*rounding, fitting) : nlohmann::ordered_json(nullptr);
   return json;
 }
 
@@ -82,7 +108,8 @@ void print_json(const Findings& findings) {
       {"bounds", {{"min", to_json(scene.bounds_min)}, {"max", to_json(scene.bounds_max)}}},
       {"objects", nlohmann::ordered_json::array()}};
   for (std::size_t i = 0; i < scene.objects.size(); ++i) {
-    json["objects"].push_back(to_json(scene.objects[i], find_summary(findings, i)));
+    json["objects"].push_back(
+        to_json(scene.objects[i], find_summary(findings, i), findings.fitting_radii[i]));
   }
   const auto replace = nlohmann::ordered_json::error_handler_t::replace;
   fmt::print("{}\n", json.dump(2, ' ', false, replace));
@@ -134,7 +161,8 @@ void print_mesh(const ObjectReport& object) {
   fmt::print("\n");
 }
 
-void print_object(const ObjectReport& object, const RoundingSummary* rounding) {
+void print_object(const ObjectReport& object, const RoundingSummary* rounding,
+                  std::optional<double> fitting) {
   fmt::print("\n{}\n", object.name.empty() ? "(no name)" : object.name);
   object.csg ? print_csg(object) : print_mesh(object);
   fmt::print("  size        {}\n", format_bounds(object.bounds_min, object.bounds_max));
@@ -146,6 +174,7 @@ void print_object(const ObjectReport& object, const RoundingSummary* rounding) {
   }
   if (rounding == nullptr) return;
   for (const RoundingNote& note : rounding->notes) fmt::print("              {}\n", note.text());
+  if (fitting) fmt::print("              a radius of {:.3g} has room at every edge\n", *fitting);
 }
 
 // "12 triangles and 3 primitives": what there is of them.
@@ -164,7 +193,7 @@ void print_report(const Findings& findings, const std::string& input) {
   fmt::print("{}: {} in {}\n", input, count_parts(scene), count(scene.objects.size(), "object"));
   fmt::print("size {}\n", format_bounds(scene.bounds_min, scene.bounds_max));
   for (std::size_t i = 0; i < scene.objects.size(); ++i) {
-    print_object(scene.objects[i], find_summary(findings, i));
+    print_object(scene.objects[i], find_summary(findings, i), findings.fitting_radii[i]);
   }
 }
 
@@ -190,6 +219,14 @@ int run_info(const Arguments& arguments) {
   const auto prepared = prepare_scene(std::move(scene), {.threads = threads});
   for (const std::string& note : scene_of(*prepared).notes) console.report(note);
   findings.prepare = prepare_stats(*prepared);
+  const Scene& described = scene_of(*prepared);
+  for (std::size_t i = 0; i < findings.scene.objects.size(); ++i) {
+    std::optional<double>& fitting = findings.fitting_radii.emplace_back();
+    const RoundingSummary* const summary = find_summary(findings, i);
+    if (summary == nullptr || summary->radius == 0 || summary->clamped.empty()) continue;
+    const double most = fitting_radius_of(described, described.objects[i], summary->radius);
+    if (most > 0 && most < summary->radius) fitting = kOfFitting * most;
+  }
   if (arguments.has("--json")) {
     print_json(findings);
   } else {

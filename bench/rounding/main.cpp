@@ -5,7 +5,9 @@
 #include <exception>
 #include <filesystem>
 #include <fstream>
+#include <map>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -25,6 +27,7 @@ struct Arguments {
   std::vector<std::string> scenes = bench_scene_names();
   std::vector<std::string> models;
   std::string model_radius;
+  std::optional<arris::RoundEdges> model_edges;
   std::string methods = "none,exact,mesh:1,mesh:3,mesh:5,mesh:10,shader";
   TableOptions table;
   int move_frames = 12;
@@ -107,7 +110,8 @@ void run(const Arguments& arguments) {
     }
   }
   for (const std::string& model : arguments.models) {
-    const Table table = measure_table(make_model_scene(model, arguments.model_radius), options);
+    const Table table = measure_table(
+        make_model_scene(model, arguments.model_radius, arguments.model_edges), options);
     show(text_of(table));
     results["tables"].push_back(json_of(table));
   }
@@ -145,6 +149,12 @@ int main(int argc, char** argv) {
       "--model-radius", arguments.model_radius,
       "of models: auto, a length, or a percentage such as 8% (default: auto, or what the "
       "file says)");
+  const std::map<std::string, arris::RoundEdges> edges{{"convex", arris::RoundEdges::convex},
+                                                       {"concave", arris::RoundEdges::concave},
+                                                       {"both", arris::RoundEdges::both}};
+  app.add_option("--model-edges", arguments.model_edges,
+                 "of models: convex, concave or both (default: what the file says, or convex)")
+      ->transform(CLI::CheckedTransformer(edges, CLI::ignore_case));
   app.add_option("--methods", arguments.methods,
                  "none, exact, mesh:N, shader; ratios are to the first")
       ->capture_default_str();

@@ -8,7 +8,8 @@
 
 namespace arris::bench {
 
-BenchScene make_model_scene(const std::filesystem::path& file, const std::string& radius) {
+BenchScene make_model_scene(const std::filesystem::path& file, const std::string& radius,
+                            std::optional<RoundEdges> edges) {
   BenchScene bench{file.stem().string(), file.filename().string(), load_scene(file), 0};
   if (!radius.empty()) {
     const auto settings = parse_rounding_text(radius);
@@ -16,6 +17,13 @@ BenchScene make_model_scene(const std::filesystem::path& file, const std::string
       throw std::invalid_argument("--model-radius: " + std::string(kRoundingTextForms));
     bench.scene.rounding = settings;
     for (Object& object : bench.scene.objects) object.rounding.reset();
+  }
+  if (edges) {
+    if (!bench.scene.rounding) bench.scene.rounding.emplace().method = RoundMethod::exact;
+    bench.scene.rounding->edges = *edges;
+    for (Object& object : bench.scene.objects) {
+      if (object.rounding) object.rounding->edges = *edges;
+    }
   }
   const StagingReport staged = stage_model(bench.scene, {});
   if (!staged.problem.empty()) throw std::invalid_argument(bench.title + " " + staged.problem);

@@ -4,13 +4,16 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 
 #include "rounding/scenes.h"
 
 namespace arris::bench {
 
-// radius: as --round of the program; it goes over what the file says. Empty: the file's, else automatic.
-BenchScene make_model_scene(const std::filesystem::path& file, const std::string& radius);
+// radius and edges: as --round and --round-edges of the program; they go over what the file says. Empty: the file's,
+// else automatic and convex.
+BenchScene make_model_scene(const std::filesystem::path& file, const std::string& radius,
+                            std::optional<RoundEdges> edges);
 
 }  // namespace arris::bench

@@ -141,6 +141,8 @@ struct RoundingReport {
   std::uint64_t bytes = 0;
   std::vector<RoundingNote> notes;
   std::vector<ClampedEdge> clamped;
+  std::vector<std::uint64_t>
+      rule_edges;  // how many pieces of edges each rule of the options matches
 };
 
 class Rounding {
@@ -221,6 +223,12 @@ struct RadiusLimits {
 };
 RadiusLimits find_radius_limits(const MeshView& mesh, double min_angle,
                                 const std::string& name = "");
+
+// The largest radius, up to that of the options, with which a ball that touches both faces of each edge to be rounded
+// fits somewhere along it: what a report of edges that stay sharp because the radius is too large leaves open. Radii
+// of single edges are of no account. 0: some edge has no room for a thousandth of it.
+double find_fitting_radius(const MeshView& mesh, const RoundingOptions& options,
+                           const std::string& name = "");
 
 // Throws Error (kind input, where = `name`) if the radius is not positive or, with TooLarge::error, not smaller
 // than the inradius of a closed convex solid; the message says one that works.

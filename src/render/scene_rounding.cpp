@@ -3,8 +3,13 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <cstdint>
 #include <map>
+#include <span>
 #include <tuple>
+#include <utility>
+
+#include <fmt/format.h>
 
 #include "arris/error.h"
 #include "base/parallel_for.h"
@@ -65,6 +70,7 @@ class Maker {
                    if (!tasks_[i].result) build(tasks_[i]);
                  });
     for (Task& task : tasks_) attach(task);
+    note_rules_without_edges();
     end_if_stopped(options_.stop);
     if (out_.any) out_.fillets = SceneFillets(out_.geometries);
     if (out_.any) find_void_neighbors(geometry_, out_, options_.threads, before_);
@@ -209,8 +215,33 @@ class Maker {
                                 task.options.radius * task.scale.value_or(1), report.rounded_edges,
                                 report.rounded_corners, report.notes,
                                 clamped_in_world(task, r, object)});
+      count_matches(settings_of(i)->rules, report.rule_edges);
     }
     out_.roundings.push_back(std::move(task.result));
+  }
+
+  void count_matches(const std::vector<EdgeRule>& rules, std::span<const std::uint64_t> edges) {
+    if (rules.empty()) return;
+    auto known = std::ranges::find(matches_, rules, &RuleMatches::rules);
+    if (known == matches_.end()) {
+      matches_.push_back({rules, std::vector<std::uint64_t>(rules.size(), 0), {}});
+      known = matches_.end() - 1;
+    }
+    for (std::size_t k = 0; k < edges.size(); ++k) known->edges[k] += edges[k];
+    known->summaries.push_back(out_.summaries.size() - 1);
+  }
+
+  // One that matches edges of another object is right.
+  void note_rules_without_edges() {
+    for (const RuleMatches& matches : matches_) {
+      for (std::size_t k = 0; k < matches.edges.size(); ++k) {
+        if (matches.edges[k] > 0) continue;
+        const RoundingNote note{0, "", fmt::format("rule {} matches no edge to be rounded", k + 1)};
+        for (const std::size_t summary : matches.summaries) {
+          out_.summaries[summary].notes.push_back(note);
+        }
+      }
+    }
   }
 
   // The rounding was made in the object's space, in the world's, or in that without the object's translation.
@@ -245,6 +276,13 @@ class Maker {
   SceneRounding out_;
   std::vector<Task> tasks_;
   std::vector<std::vector<EdgeRule>> rules_;  // of the tasks, each once
+  // How many edges of all objects that have the rules each of these matches.
+  struct RuleMatches {
+    std::vector<EdgeRule> rules;
+    std::vector<std::uint64_t> edges;
+    std::vector<std::size_t> summaries;
+  };
+  std::vector<RuleMatches> matches_;
 };
 
 Vec3d center_of(const Mesh& mesh, const Affine3d& m) {

@@ -50,6 +50,19 @@ class BoxTree {
     const Vec3d half = (high - low) * 0.5;
     for_each_where([&](const Node& node) { return reaches(node, middle, half); }, visit);
   }
+  // The same for those nearer to a place than a distance, which the visitor may make smaller.
+  template <class Visit>
+  void for_each_within(Vec3d x, double& distance, Visit&& visit) const {
+    for_each_where(
+        [&](const Node& node) {
+          Vec3d beside;
+          for (int axis = 0; axis < 3; ++axis) {
+            beside[axis] = std::max(std::abs(node.middle[axis] - x[axis]) - node.half[axis], 0.0);
+          }
+          return length_squared(beside) <= distance * distance;
+        },
+        visit);
+  }
   // Whether one of these is what is looked for; no more are visited then.
   template <class IsIt>
   [[nodiscard]] bool any_near(Vec3d low, Vec3d high, IsIt&& is_it) const {

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdint>
 #include <optional>
+#include <utility>
 
 namespace arris {
 namespace {
@@ -30,13 +31,16 @@ class RadiusFinder {
     slack_ = places_.empty() ? 0 : kBeside * length(high - low);
   }
 
-  [[nodiscard]] double radius_of(std::uint32_t h) const {
-    const auto rule = std::find_if(options_.rules.rbegin(), options_.rules.rend(),
-                                   [&](const EdgeRule& r) { return holds(r, h); });
-    if (rule != options_.rules.rend()) {
-      return rule->is_part ? rule->radius * options_.radius : rule->radius;
+  // The last rule that holds gives it.
+  [[nodiscard]] double radius_of(std::uint32_t h, std::vector<std::uint64_t>& matches) const {
+    const EdgeRule* last = nullptr;
+    for (std::size_t i = 0; i < options_.rules.size(); ++i) {
+      if (!holds(options_.rules[i], h)) continue;
+      ++matches[i];
+      last = &options_.rules[i];
     }
-    return own_radius(h).value_or(options_.radius);
+    if (last == nullptr) return own_radius(h).value_or(options_.radius);
+    return last->is_part ? last->radius * options_.radius : last->radius;
   }
 
  private:
@@ -89,10 +93,11 @@ class RadiusFinder {
 
 }  // namespace
 
-std::vector<double> find_edge_radii(const MeshView& mesh, const WeldedMesh& welded,
-                                    const FlatRegions& regions, std::span<const EdgeKind> kinds,
-                                    const RoundingOptions& options) {
-  if (options.rules.empty() && welded.edge_radii.empty()) return {};
+EdgeRadii find_edge_radii(const MeshView& mesh, const WeldedMesh& welded,
+                          const FlatRegions& regions, std::span<const EdgeKind> kinds,
+                          const RoundingOptions& options) {
+  EdgeRadii out{{}, std::vector<std::uint64_t>(options.rules.size(), 0)};
+  if (options.rules.empty() && welded.edge_radii.empty()) return out;
   const RadiusFinder finder(mesh, welded, regions, options);
   std::vector<double> radii(kinds.size(), options.radius);
   bool any = false;
@@ -101,10 +106,11 @@ std::vector<double> find_edge_radii(const MeshView& mesh, const WeldedMesh& weld
     const bool is_rounded = kinds[h] == EdgeKind::convex ||
                             (kinds[h] == EdgeKind::concave && options.edges != RoundEdges::convex);
     if (!is_rounded || twin < h) continue;
-    radii[h] = radii[twin] = finder.radius_of(h);
+    radii[h] = radii[twin] = finder.radius_of(h, out.matches);
     any = any || radii[h] != options.radius;
   }
-  return any ? radii : std::vector<double>();
+  if (any) out.radii = std::move(radii);
+  return out;
 }
 
 }  // namespace arris

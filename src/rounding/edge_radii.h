@@ -2,6 +2,7 @@
 // What       MeshView::edge_radii, and RoundingOptions::rules, which go before
 #pragma once
 
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -11,9 +12,13 @@
 
 namespace arris {
 
-// Per half-edge, of those to be rounded, else the options'; empty if all have the options' radius.
-std::vector<double> find_edge_radii(const MeshView& mesh, const WeldedMesh& welded,
-                                    const FlatRegions& regions, std::span<const EdgeKind> kinds,
-                                    const RoundingOptions& options);
+struct EdgeRadii {
+  // Per half-edge, of those to be rounded, else the options'; empty if all have the options' radius.
+  std::vector<double> radii;
+  std::vector<std::uint64_t> matches;  // of each rule
+};
+EdgeRadii find_edge_radii(const MeshView& mesh, const WeldedMesh& welded,
+                          const FlatRegions& regions, std::span<const EdgeKind> kinds,
+                          const RoundingOptions& options);
 
 }  // namespace arris

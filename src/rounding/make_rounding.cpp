@@ -43,7 +43,9 @@ class RoundingMaker {
       regions_ = make_flat_regions(welded_);
     }
     classify_edges();
-    radii_ = find_edge_radii(mesh_, welded_, regions_, kinds_, options_);
+    auto [radii, matches] = find_edge_radii(mesh_, welded_, regions_, kinds_, options_);
+    radii_ = std::move(radii);
+    data_->report.rule_edges = std::move(matches);
     sort_triangles_by_region();
     make_solids();
     for (std::uint32_t s = 0; s < data_->solids.size(); ++s) judge_shape(s);

@@ -87,10 +87,11 @@ bool SolidSurface::is_near(Vec3d x, double distance, std::uint32_t but_region) c
 
 std::optional<SolidSurface::NearestPlace> SolidSurface::nearest(Vec3d x, double within) const {
   NearestPlace found{nullptr, {}, within};
-  for_each_near(x - Vec3d(within), x + Vec3d(within), [&](const SurfaceTriangle& t) {
-    const Vec3d place = nearest_on_triangle(x, t);
+  tree_.for_each_within(x, found.distance, [&](std::uint32_t i) {
+    if (is_plainly_beyond(x, triangles_[i], found.distance)) return;
+    const Vec3d place = nearest_on_triangle(x, triangles_[i]);
     const double distance = length(x - place);
-    if (distance < found.distance) found = {&t, place, distance};
+    if (distance < found.distance) found = {&triangles_[i], place, distance};
   });
   if (found.triangle == nullptr) return std::nullopt;
   return found;

@@ -9,6 +9,7 @@
 
 #include "arris/io.h"
 #include "arris/rounding.h"
+#include "support/creased_solids.h"
 #include "support/mesh_checks.h"
 #include "support/render_scenes.h"
 
@@ -130,6 +131,51 @@ TEST(RadiusLimits, of_a_machined_part_fit_its_walls_rather_than_its_facets) {
   const double half_width = limits_of(scene.meshes.at(0)).typical_half_width.value();
   EXPECT_GT(half_width, 3);
   EXPECT_LT(half_width, 20);
+}
+
+double fitting_radius_of(const oracle::TriangleSoup& mesh, RoundEdges edges) {
+  RoundingOptions options;
+  options.edges = edges;
+  options.radius = 10;
+  return find_fitting_radius(mesh.view(), options, mesh.name);
+}
+
+TEST(FittingRadius, leaves_no_edge_sharp) {
+  for (const oracle::CreasedCase& solid : oracle::make_creased_cases()) {
+    SCOPED_TRACE(solid.mesh.name);
+    for (const RoundEdges edges : {RoundEdges::convex, RoundEdges::concave, RoundEdges::both}) {
+      RoundingOptions options;
+      options.edges = edges;
+      options.radius = 0.98 * fitting_radius_of(solid.mesh, edges);
+      EXPECT_GT(options.radius, solid.radius);
+      const Rounding rounding = make_rounding(solid.mesh.view(), options, solid.mesh.name);
+      for (const RoundingNote& note : rounding.report().notes) {
+        EXPECT_FALSE(note.many.starts_with("edges stay sharp: the radius")) << note.text();
+      }
+    }
+  }
+}
+
+// Two walls 0.5 thick, 0.3 apart, on a floor as thick as they are.
+TEST(FittingRadius, is_half_the_width_of_walls_and_slots) {
+  const oracle::Outline outline{{0, 0},     {1.3, 0},   {1.3, 2}, {0.8, 2},
+                                {0.8, 0.5}, {0.5, 0.5}, {0.5, 2}, {0, 2}};
+  const oracle::TriangleSoup slotted = oracle::prism_over("slotted", outline, {2, 1, 0});
+  EXPECT_NEAR(fitting_radius_of(slotted, RoundEdges::convex), 0.25, 0.005);
+  EXPECT_NEAR(fitting_radius_of(slotted, RoundEdges::concave), 0.15, 0.003);
+  EXPECT_NEAR(fitting_radius_of(slotted, RoundEdges::both), 0.15, 0.003);
+}
+
+// Of a box with walls 0.2 thick: balls at its edges touch the edges of its hollow.
+TEST(FittingRadius, sees_hollows) {
+  Mesh mesh = test::make_box_mesh({2, 2, 2});
+  Mesh hollow = test::make_box_mesh({1.8, 1.8, 1.8});
+  for (Triangle& t : hollow.triangles) std::swap(t[1], t[2]);
+  append(mesh, hollow, {0, 0, 0});
+  RoundingOptions options;
+  options.radius = 10;
+  const double fits = find_fitting_radius({mesh.positions, mesh.triangles}, options);
+  EXPECT_NEAR(fits, 0.2 * std::sqrt(2) / (1 + std::sqrt(2)), 0.002);
 }
 
 }  // namespace
