@@ -112,22 +112,25 @@ class ArcWay {
         direction_(ray.direction / speed_),
         r_(radius) {}
 
-  // Between two t of the ray: where it first is within a ball.
-  [[nodiscard]] std::optional<PipeHit> enter(double from, double to) const {
+  // Between two t of the ray: where it first is within a ball; and from there where it leaves them.
+  [[nodiscard]] std::optional<PipePlace> enter(double from, double to) const {
     const auto met = arc_.enter(origin_, direction_, from * speed_, to * speed_, r_);
     if (!met) return std::nullopt;
-    const Vec3d away = origin_ + direction_ * met->along - arc_.at(met->turn);
-    return PipeHit{met->along / speed_, normalize(away), true};
+    return place_of(*met);
   }
-  // From one t within balls: where it leaves them.
-  [[nodiscard]] double leave(double from) const {
-    return arc_.leave(origin_, direction_, from * speed_, r_).along / speed_;
+  [[nodiscard]] PipePlace leave(double from) const {
+    return place_of(arc_.leave(origin_, direction_, from * speed_, r_));
   }
   // So far beyond a t that it is another place.
   [[nodiscard]] double beyond(double t) const { return t + kApart * r_ / speed_; }
 
  private:
   static constexpr double kApart = 1e-6;
+
+  [[nodiscard]] PipePlace place_of(const ShortArc::Crossing& crossing) const {
+    const Vec3d away = origin_ + direction_ * crossing.along - arc_.at(crossing.turn);
+    return {crossing.along / speed_, arc_.parameter(crossing.turn), normalize(away)};
+  }
 
   const ShortArc& arc_;
   Vec3d origin_;
@@ -221,12 +224,12 @@ std::optional<PipeHit> CreasePipes::first_entry(Vec3d origin, Vec3d direction, d
     if (!parts_[i].curve.is_line) {
       const ArcWay way(parts_[i].arc, {origin, direction}, balls.radius);
       const double last = std::min(span->t1, end);
-      std::optional<PipeHit> met = way.enter(t, last);
+      auto met = way.enter(t, last);
       // One that leaves may come back where the arc bends.
       if (met && dot(met->normal, direction) >= 0) met = way.enter(way.beyond(met->t), last);
       if (!met || dot(met->normal, direction) >= 0) return;
       end = met->t;
-      best = met;
+      best = PipeHit{met->t, met->normal, true};
       return;
     }
     const Vec3d x = origin + direction * t - balls.p0;
@@ -249,32 +252,35 @@ std::optional<PipeSpan> CreasePipes::span_of(std::uint32_t index, Vec3d origin, 
                                              double after) const {
   const std::optional<Span> span = meet_balls(origin, direction, balls_[index]);
   if (!span) return std::nullopt;
-  const auto place_at = [&](double t) {
-    const Vec3d x = origin + direction * t;
-    const Foot foot = foot_on(index, x);
-    return PipePlace{t, foot.u, normalize(x - foot.point)};
-  };
   if (parts_[index].curve.is_line) {
     if (span->t1 <= after) return std::nullopt;
+    const auto place_at = [&](double t) {
+      const Vec3d x = origin + direction * t;
+      const Foot foot = foot_on(index, x);
+      return PipePlace{t, foot.u, normalize(x - foot.point)};
+    };
     return PipeSpan{place_at(span->t0), place_at(span->t1)};
   }
   const ArcWay way(parts_[index].arc, {origin, direction}, balls_[index].radius);
   const auto in = way.enter(std::max(span->t0, way.beyond(after)), span->t1);
   if (!in) return std::nullopt;
-  return PipeSpan{place_at(in->t), place_at(way.leave(in->t))};
+  return PipeSpan{*in, way.leave(in->t)};
 }
 
 bool CreasePipes::holds(Vec3d x, double depth) const {
-  bool found = false;
-  tree_.for_each_near(x, x, [&](std::uint32_t i) {
-    if (found || balls_[i].growth != 0) {
-      found = found || distance_to_balls(parts_[i].curve, x) < -depth;
-      return;
-    }
-    const double least = balls_[i].radius - depth;
-    found = length_squared(x - foot_on(i, x).point) < least * least;
+  return tree_.any_near(x, x, [&](std::uint32_t i) {
+    const ChordBalls& balls = balls_[i];
+    if (balls.growth != 0) return distance_to_balls(parts_[i].curve, x) < -depth;
+    const double least = balls.radius - depth;
+    const double along = std::clamp(dot(x - balls.p0, balls.axis), 0.0, balls.extent);
+    const double squared = length_squared(x - balls.p0 - balls.axis * along);
+    if (parts_[i].curve.is_line) return least > 0 && squared < least * least;
+    // An arc is nowhere farther from its chord than the bulge.
+    const double most = least + balls.bulge, surely = least - balls.bulge;
+    if (most <= 0 || squared > most * most) return false;
+    if (surely > 0 && squared < surely * surely) return true;
+    return least > 0 && length_squared(x - foot_on(i, x).point) < least * least;
   });
-  return found;
 }
 
 std::size_t CreasePipes::bytes() const {

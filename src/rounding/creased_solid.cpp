@@ -227,12 +227,7 @@ double CreasedSolid::beneath() const {
 // The nearest ball's centre is on a crease, or on the way from the nearest place of the surface through x: two balls
 // one of which holds the other touch there.
 bool CreasedSolid::is_beneath(Vec3d x, double radii) const {
-  bool within = false;
-  const double least = -std::max(beneath(), radii * radius);
-  pipes.for_each_near(x, x, [&](const CreaseCurve& part) {
-    within = within || distance_to_balls(part, x) < least;
-  });
-  if (within || mouths.hold(surface, x)) return true;
+  if (pipes.holds(x, std::max(beneath(), radii * radius)) || mouths.hold(surface, x)) return true;
   const auto nearest = surface.nearest(x, radius);
   if (!nearest) return true;
   const auto& [t, foot, distance] = *nearest;
