@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
@@ -24,11 +25,8 @@ struct Findings {
   std::vector<std::optional<double>> fitting_radii;  // of the objects that lack room at some edge
 };
 
-// What is named has a little more room than it needs.
-constexpr double kOfFitting = 0.98;
-
 // In world units.
-double fitting_radius_of(const Scene& scene, const Object& object, double radius) {
+std::optional<double> fitting_radius_of(const Scene& scene, const Object& object, double radius) {
   const Mesh& mesh = scene.meshes[object.mesh.index];
   std::vector<Vec3f> positions;
   positions.reserve(mesh.positions.size());
@@ -174,7 +172,8 @@ void print_object(const ObjectReport& object, const RoundingSummary* rounding,
   }
   if (rounding == nullptr) return;
   for (const RoundingNote& note : rounding->notes) fmt::print("              {}\n", note.text());
-  if (fitting) fmt::print("              a radius of {:.3g} has room at every edge\n", *fitting);
+  if (fitting)
+    fmt::print("              a radius of {:.3g} leaves no edge sharp for that\n", *fitting);
 }
 
 // "12 triangles and 3 primitives": what there is of them.
@@ -223,9 +222,10 @@ int run_info(const Arguments& arguments) {
   for (std::size_t i = 0; i < findings.scene.objects.size(); ++i) {
     std::optional<double>& fitting = findings.fitting_radii.emplace_back();
     const RoundingSummary* const summary = find_summary(findings, i);
-    if (summary == nullptr || summary->radius == 0 || summary->clamped.empty()) continue;
-    const double most = fitting_radius_of(described, described.objects[i], summary->radius);
-    if (most > 0 && most < summary->radius) fitting = kOfFitting * most;
+    if (summary == nullptr) continue;
+    const auto stays_sharp = [](const ClampedEdge& edge) { return edge.radius == 0; };
+    if (std::ranges::none_of(summary->clamped, stays_sharp)) continue;
+    fitting = fitting_radius_of(described, described.objects[i], summary->radius);
   }
   if (arguments.has("--json")) {
     print_json(findings);

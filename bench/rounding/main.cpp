@@ -5,9 +5,7 @@
 #include <exception>
 #include <filesystem>
 #include <fstream>
-#include <map>
 #include <nlohmann/json.hpp>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -27,7 +25,7 @@ struct Arguments {
   std::vector<std::string> scenes = bench_scene_names();
   std::vector<std::string> models;
   std::string model_radius;
-  std::optional<arris::RoundEdges> model_edges;
+  std::string model_edges;
   std::string methods = "none,exact,mesh:1,mesh:3,mesh:5,mesh:10,shader";
   TableOptions table;
   int move_frames = 12;
@@ -149,12 +147,9 @@ int main(int argc, char** argv) {
       "--model-radius", arguments.model_radius,
       "of models: auto, a length, or a percentage such as 8% (default: auto, or what the "
       "file says)");
-  const std::map<std::string, arris::RoundEdges> edges{{"convex", arris::RoundEdges::convex},
-                                                       {"concave", arris::RoundEdges::concave},
-                                                       {"both", arris::RoundEdges::both}};
   app.add_option("--model-edges", arguments.model_edges,
                  "of models: convex, concave or both (default: what the file says, or convex)")
-      ->transform(CLI::CheckedTransformer(edges, CLI::ignore_case));
+      ->check(CLI::IsMember({"convex", "concave", "both"}));
   app.add_option("--methods", arguments.methods,
                  "none, exact, mesh:N, shader; ratios are to the first")
       ->capture_default_str();

@@ -9,7 +9,7 @@
 namespace arris::bench {
 
 BenchScene make_model_scene(const std::filesystem::path& file, const std::string& radius,
-                            std::optional<RoundEdges> edges) {
+                            const std::string& edges) {
   BenchScene bench{file.stem().string(), file.filename().string(), load_scene(file), 0};
   if (!radius.empty()) {
     const auto settings = parse_rounding_text(radius);
@@ -18,11 +18,14 @@ BenchScene make_model_scene(const std::filesystem::path& file, const std::string
     bench.scene.rounding = settings;
     for (Object& object : bench.scene.objects) object.rounding.reset();
   }
-  if (edges) {
+  if (!edges.empty()) {
+    const RoundEdges kind = edges == "both"      ? RoundEdges::both
+                            : edges == "concave" ? RoundEdges::concave
+                                                 : RoundEdges::convex;
     if (!bench.scene.rounding) bench.scene.rounding.emplace().method = RoundMethod::exact;
-    bench.scene.rounding->edges = *edges;
+    bench.scene.rounding->edges = kind;
     for (Object& object : bench.scene.objects) {
-      if (object.rounding) object.rounding->edges = *edges;
+      if (object.rounding) object.rounding->edges = kind;
     }
   }
   const StagingReport staged = stage_model(bench.scene, {});

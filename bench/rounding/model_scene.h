@@ -4,7 +4,6 @@
 #pragma once
 
 #include <filesystem>
-#include <optional>
 #include <string>
 
 #include "rounding/scenes.h"
@@ -14,6 +13,6 @@ namespace arris::bench {
 // radius and edges: as --round and --round-edges of the program; they go over what the file says. Empty: the file's,
 // else automatic and convex.
 BenchScene make_model_scene(const std::filesystem::path& file, const std::string& radius,
-                            std::optional<RoundEdges> edges);
+                            const std::string& edges);
 
 }  // namespace arris::bench

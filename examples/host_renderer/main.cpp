@@ -4,7 +4,7 @@
 // Usage      host_renderer PICTURE.ppm [RADIUS [WIDTH [SAMPLES]]] [--edges convex|concave|both] [--vary]
 //            host_renderer --furnace [RADIUS] [--edges …] [--vary]: all solids white under a white sky. Every path
 //            must find its way out; exits 1 if the rounding lets one into a solid.
-//            --vary: edges on the ground stay sharp, concave ones and those of the upper cube have radii of their
+//            --vary: edges on the ground stay sharp, concave ones and those that lie high up have radii of their
 //            own. What could not be rounded as asked is printed.
 #include <embree3/rtcore.h>
 
@@ -457,7 +457,7 @@ struct Rounded {
   bool is_varied = false;
 };
 
-// The first rule that an edge matches gives its radius.
+// The last rule that an edge matches gives its radius.
 arris::RoundingOptions options_of(const Rounded& rounded) {
   arris::RoundingOptions options;
   options.radius = rounded.radius;
@@ -466,15 +466,15 @@ arris::RoundingOptions options_of(const Rounded& rounded) {
     return options;
   }
   constexpr double kFar = 100;
-  arris::EdgeRule ground, concave, upper;
+  arris::EdgeRule ground, concave, high;
   ground.radius = 0;
   ground.kind = RoundEdges::convex;
   ground.box = {Vec3d(-kFar, -kFar, -1e-3), Vec3d(kFar, kFar, 1e-3)};
   concave.radius = 0.75 * rounded.radius;
   concave.kind = RoundEdges::concave;
-  upper.radius = 1.5 * rounded.radius;
-  upper.box = {Vec3d(-kFar, -kFar, 0.9), Vec3d(kFar, kFar, kFar)};
-  options.rules = {ground, concave, upper};
+  high.radius = 1.5 * rounded.radius;
+  high.box = {Vec3d(-kFar, -kFar, 0.9), Vec3d(kFar, kFar, kFar)};
+  options.rules = {ground, concave, high};
   // Edges without room get a smaller radius instead of staying sharp.
   options.on_overlap = arris::OnOverlap::clamp;
   return options;
@@ -545,7 +545,15 @@ int run(std::vector<std::string> arguments) {
   }
   rounded.is_varied = std::erase(arguments, "--vary") > 0;
   const auto number = [&](std::size_t at, double otherwise) {
-    return at < arguments.size() ? std::stod(arguments[at]) : otherwise;
+    if (at >= arguments.size()) {
+      return otherwise;
+    }
+    char* end = nullptr;
+    const double value = std::strtod(arguments[at].c_str(), &end);
+    if (*end != '\0' || !(value > 0)) {
+      throw std::invalid_argument('"' + arguments[at] + "\" is no positive number");
+    }
+    return value;
   };
   if (arguments.empty()) {
     std::fputs(

@@ -49,6 +49,7 @@ struct SceneReport {
   std::vector<ObjectReport> objects;
 };
 
+// min_angle: of objects that have no rounding of their own.
 SceneReport inspect_scene(const Scene& scene, double min_angle = radians(30));
 
 }  // namespace arris

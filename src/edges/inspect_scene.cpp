@@ -125,7 +125,8 @@ SceneReport inspect_scene(const Scene& scene, double min_angle) {
   report.bounds_min = Vec3d(kInfinity);
   report.bounds_max = Vec3d(-kInfinity);
   for (const Object& object : scene.objects) {
-    report.objects.push_back(inspect_object(scene, object, min_angle));
+    const double own = object.rounding ? object.rounding->min_angle : min_angle;
+    report.objects.push_back(inspect_object(scene, object, own));
     const ObjectReport& last = report.objects.back();
     report.triangles += last.triangles;
     report.bounds_min = min(report.bounds_min, last.bounds_min);

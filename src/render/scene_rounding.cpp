@@ -12,6 +12,7 @@
 #include <fmt/format.h>
 
 #include "arris/error.h"
+#include "base/check.h"
 #include "base/parallel_for.h"
 #include "render/auto_radius.h"
 #include "render/void_neighbors.h"
@@ -227,6 +228,7 @@ class Maker {
       matches_.push_back({rules, std::vector<std::uint64_t>(rules.size(), 0), {}});
       known = matches_.end() - 1;
     }
+    ARRIS_CHECK(edges.size() == rules.size());
     for (std::size_t k = 0; k < edges.size(); ++k) known->edges[k] += edges[k];
     known->summaries.push_back(out_.summaries.size() - 1);
   }

@@ -1,25 +1,33 @@
 #include "rounding/answer_table.h"
 
-#include <algorithm>
-#include <cmath>
-#include <cstddef>
-
 namespace arris {
 namespace {
 
-constexpr int kLeastBits = 9, kMostBits = 19;
+constexpr int kLeastBits = 10, kMostBits = 19;
+constexpr int kMoreBits = 3;  // of the next level
 
 }  // namespace
 
-AnswerTable::AnswerTable(double answers)
-    : bits_(std::clamp(int(std::ceil(std::log2(std::max(answers, 1.0)))), kLeastBits, kMostBits)),
-      table_(std::make_unique<Table>()) {}
+AnswerTable::Level::Level(int bits)
+    : bits(bits),
+      most_stores(std::uint64_t{1} << (bits - 1)),
+      entries(std::make_unique<std::atomic<std::uint64_t>[]>(std::size_t{1} << bits)) {}
 
-std::atomic<std::uint64_t>& AnswerTable::entry_of(std::uint64_t hash) const {
-  std::call_once(table_->once, [&] {
-    table_->entries = std::make_unique<std::atomic<std::uint64_t>[]>(std::size_t{1} << bits_);
-  });
-  return table_->entries[hash >> (64 - bits_)];
+const AnswerTable::Level& AnswerTable::first() const {
+  const std::lock_guard lock(levels_->mutex);
+  if (levels_->all.empty()) {
+    levels_->all.push_back(std::make_unique<const Level>(kLeastBits));
+    levels_->current.store(levels_->all.back().get(), std::memory_order_release);
+  }
+  return *levels_->all.back();
+}
+
+void AnswerTable::grow(const Level& from) const {
+  if (from.bits >= kMostBits) return;
+  const std::lock_guard lock(levels_->mutex);
+  if (levels_->all.back().get() != &from) return;
+  levels_->all.push_back(std::make_unique<const Level>(from.bits + kMoreBits));
+  levels_->current.store(levels_->all.back().get(), std::memory_order_release);
 }
 
 }  // namespace arris

@@ -17,6 +17,8 @@ constexpr double kSlack = 1e-9;
 constexpr double kStuck = 0.05, kStuckInBlade = 1e-4;
 // First radii are halved so often where there is no room.
 constexpr int kFirstHalvings = 20;
+// Cosine of the angle between a face's normal and the way to where a ball touches it, if that is not at its end.
+constexpr double kOnSide = 0.97;
 // Of the radius: so far below an edge a ball begins to grow.
 constexpr double kBelowEdge = 1e-3;
 constexpr int kMostGrowth = 400, kMostFineGrowth = 100;
@@ -43,7 +45,7 @@ bool are_opposite(const Contact& a, const Contact& b) {
 }
 
 // The point nearest to the origin of the hull of unit vectors. E. G. Gilbert, D. W. Johnson, S. S. Keerthi, "A fast
-// procedure for computing the distance between complex objects" (1988).
+// procedure for computing the distance between complex objects in three-dimensional space" (1988).
 Vec3d nearest_of_hull(const std::vector<Vec3d>& directions) {
   constexpr int kRounds = 64;
   constexpr double kNear = 1e-9, kSurely = 1e-6;  // the places of slivers are inexact
@@ -190,6 +192,21 @@ class GrowingBall {
     return false;
   }
 
+  // Whether a side of a blade ends there, in a concave edge: a ball that is still between the two sides does not fit
+  // where the blade begins. The way to the face beyond such an edge is not along its normal; facets of a curved side
+  // are one.
+  [[nodiscard]] bool is_at_foot(const Contact& contact) const {
+    const auto is_there = [&](const Contact& c) {
+      return dot(c.direction, contact.direction) > 1 - 2 * touching_;
+    };
+    return std::ranges::any_of(contacts_, [&](const Contact& c) {
+      if (!is_there(c) || dot(c.direction, c.normal) > kOnSide) return false;
+      return std::ranges::none_of(contacts_, [&](const Contact& d) {
+        return is_there(d) && surface_.is_joined(c.triangle->region, d.triangle->region);
+      });
+    });
+  }
+
   // A ball in a blade, or in a needle, goes on however slowly.
   [[nodiscard]] bool is_stuck() const {
     const double speed = length(middle_);
@@ -197,7 +214,7 @@ class GrowingBall {
     for (const Contact& a : contacts_) {
       for (const Contact& b : contacts_) {
         if (!are_opposite(a, b)) continue;
-        if (!are_of_blade(a, b)) return true;
+        if (!are_of_blade(a, b) || is_at_foot(a) || is_at_foot(b)) return true;
         in_blade = true;
       }
     }

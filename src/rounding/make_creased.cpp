@@ -86,10 +86,6 @@ class CreasedMaker {
     if (found.curves.empty()) return std::nullopt;
     auto [bands, lists] = find_bands(surface);
     ClearCells clear = find_clear_cells(surface, bands);
-    double area = 0;
-    for (const SurfaceTriangle& t : surface.triangles()) {
-      area += 0.5 * length(cross(t.p1 - t.p0, t.p2 - t.p0));
-    }
     CreasedSolid solid{std::move(surface),
                        CreasePipes(std::move(found.curves)),
                        std::move(found.field),
@@ -98,8 +94,8 @@ class CreasedMaker {
                        std::move(clear),
                        NearLists(lists),
                        {},
-                       StuckPlaces(r_, area),
-                       NarrowCells(r_, area)};
+                       StuckPlaces(r_),
+                       NarrowCells(r_)};
     if (in_.is_outside) {
       solid.mouths = OpenMouths(solid.surface, solid.pipes, solid.tolerance);
     }

@@ -502,10 +502,12 @@ class RoundingMaker {
          "convex edges stay sharp: only concave edges are to be rounded");
     note(cavities_, "hollow inside another solid: its edges stay sharp",
          "hollows inside other solids: their edges stay sharp");
-    note(report.concave_edges - filled_edges_ - concave_by_rule_, "concave edge stays sharp",
-         "concave edges stay sharp");
+    const std::uint64_t unfilled = report.concave_edges - filled_edges_ - concave_by_rule_;
+    note(unfilled, "concave edge stays sharp", "concave edges stay sharp");
     note(report.nonmanifold_edges, "non-manifold edge stays sharp",
          "non-manifold edges stay sharp");
+    report.narrow_edges = shortened_ + narrow_ + left_in_creased_ + too_small_ +
+                          (options_.edges == RoundEdges::convex ? 0 : unfilled);
     note(shortened_, "edge stays sharp: the radius needs more length than it has",
          "edges stay sharp: the radius needs more length than they have");
     note(narrow_ + left_in_creased_,

@@ -14,9 +14,6 @@ constexpr double kCell = 0.5, kLargest = 2.5;
 
 }  // namespace
 
-NarrowCells::NarrowCells(double radius, double area)
-    : radius_(radius), table_(4 * area / (kCell * kCell * radius * radius)) {}
-
 bool NarrowCells::may_be_between_walls(const SolidSurface& surface, Vec3d center,
                                        double radius) const {
   if (!surface.has_walls()) return false;
@@ -26,7 +23,7 @@ bool NarrowCells::may_be_between_walls(const SolidSurface& surface, Vec3d center
   std::uint64_t hash = 0;
   for (int axis = 0; axis < 3; ++axis) {
     const double at = std::floor(center[axis] / cell);
-    hash = mixed(hash ^ std::bit_cast<std::uint64_t>(at + 0.0));  // -0 is 0
+    hash = hash_with(hash, std::bit_cast<std::uint64_t>(at + 0.0));  // -0 is 0
     middle[axis] = (at + 0.5) * cell;
   }
   const double beside = 0.5 * std::sqrt(3.0) * cell;

@@ -2,7 +2,7 @@
 // What       is_between_walls() searches all that is within two radii; nearly everywhere the answer is no, for all
 //            places near. Cells that have walls near say no more than that.
 // Threads    may be used by several; what is answered does not depend on their order
-// Cost       8 bytes to a cell, up to 4 MB for each solid, made when the first is asked; not among its bytes()
+// Cost       that of an answer table, which is not among the solid's bytes()
 #pragma once
 
 #include "arris/math.h"
@@ -15,8 +15,7 @@ class NarrowCells {
  public:
   // Nothing can be asked.
   NarrowCells() = default;
-  // area: of all faces.
-  NarrowCells(double radius, double area);
+  explicit NarrowCells(double radius) : radius_(radius) {}
 
   // Whether is_between_walls() may hold of a ball.
   [[nodiscard]] bool may_be_between_walls(const SolidSurface& surface, Vec3d center,

@@ -14,8 +14,7 @@ constexpr double kNormalSteps = 1024;
 
 }  // namespace
 
-StuckPlaces::StuckPlaces(double radius, double area)
-    : spacing_(kSpacing * radius), table_(2 * area / (spacing_ * spacing_)) {}
+StuckPlaces::StuckPlaces(double radius) : spacing_(kSpacing * radius) {}
 
 // Nearly the same for normals that are computed in other ways. The frame jumps between 0 and −0.
 StuckPlaces::Axes StuckPlaces::axes_across(Vec3d normal) {
@@ -31,10 +30,10 @@ std::uint64_t StuckPlaces::hash_of(std::uint32_t face, const Axes& axes,
                                    const std::array<double, 2>& cell) {
   std::uint64_t hash = face;
   for (const float x : {axes.about.x, axes.about.y, axes.about.z}) {
-    hash = mixed(hash ^ std::bit_cast<std::uint32_t>(x));
+    hash = hash_with(hash, std::bit_cast<std::uint32_t>(x));
   }
   for (const double x : cell)
-    hash = mixed(hash ^ std::bit_cast<std::uint64_t>(x + 0.0));  // -0 is 0
+    hash = hash_with(hash, std::bit_cast<std::uint64_t>(x + 0.0));  // -0 is 0
   return hash;
 }
 

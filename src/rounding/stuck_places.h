@@ -3,7 +3,7 @@
 //            itself is asked. What has been found out is kept in a table, in which it may be overwritten: a search by
 //            growing_ball.h costs as much as hundreds of rays.
 // Threads    may be used by several; what is answered does not depend on their order
-// Cost       8 bytes to a place, up to 4 MB for each solid, made when the first is asked; not among its bytes()
+// Cost       that of an answer table, which is not among the solid's bytes()
 // Limits     what is smaller than a cell, an eighth of the radius, may be missed
 #pragma once
 
@@ -22,8 +22,7 @@ class StuckPlaces {
  public:
   // No balls.
   StuckPlaces() = default;
-  // area: of all faces.
-  StuckPlaces(double radius, double area);
+  explicit StuckPlaces(double radius);
 
   // is_stuck: whether balls get stuck at a place of the face near one of its plane.
   enum class Answer : std::uint8_t { no, yes, not_on_face };

@@ -1,6 +1,7 @@
 #include "rounding/thin_walls.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <span>
 #include <tuple>
@@ -125,6 +126,8 @@ ThinWalls find_thin_walls(const ThinWallInput& input) {
     std::uint32_t triangle;
     FacePair opposite;  // the same face twice: of a rod
   };
+  std::vector<std::atomic<bool>> are_of_rods(
+      triangles.size());  // what is known need not be told again
   const auto find = [&](std::size_t i, std::vector<Side>& sides) {
     const Touchable own{&triangles[i], normal_of(triangles[i].region)};
     const auto add = [&](const Touchable& a, const Touchable& b) {
@@ -150,8 +153,14 @@ ThinWalls find_thin_walls(const ThinWallInput& input) {
       const auto& [p0, p1, p2, region, index] = *a.triangle;
       const auto look = [&](const SurfaceTriangle& t) {
         const Touchable b{&t, normal_of(t.region)};
+        const auto flag_of = [&](const Touchable& side) -> std::atomic<bool>& {
+          return are_of_rods[std::size_t(side.triangle - triangles.data())];
+        };
+        if (flag_of(own) && flag_of(a) && flag_of(b)) return;
         if (!are_around(own, a, b)) return;
-        for (const Touchable& side : {own, a, b}) add(side, side);
+        for (const Touchable& side : {own, a, b}) {
+          if (!flag_of(side).exchange(true)) add(side, side);
+        }
       };
       input.surface.for_each_near(min(p0, min(p1, p2)) - reach, max(p0, max(p1, p2)) + reach, look);
     }

@@ -323,6 +323,32 @@ TEST(ThinWalls, needles_are_rounded) {
   }
 }
 
+// A blade on a block: a ball fits where it begins, and rounds it, or does not, and it stays but for what is thinner
+// than a part of the radius at its tip.
+TEST(ThinWalls, blades_on_too_thin_a_foot_stay) {
+  constexpr double kRadius = 0.5, kHeight = 5;
+  for (const double half_foot : {0.05, 0.1, 0.2, 0.4, 0.9, 1.5}) {
+    SCOPED_TRACE(half_foot);
+    const Outline outline{{-6, -4},     {6, -4},         {6, 0}, {half_foot, 0},
+                          {0, kHeight}, {-half_foot, 0}, {-6, 0}};
+    const TriangleSoup mesh = prism_over("blade", outline, {9, 1, 0});
+    const Rounding rounding = round(mesh, kRadius);
+    ASSERT_EQ(rounding.data().creased.size(), 1U);
+    const bool stays = half_foot < kRadius;
+    EXPECT_EQ(rounding.report().clamped.empty(), !stays);
+    const double lean = std::atan(half_foot / kHeight);
+    const double top = stays ? kHeight : kHeight - kRadius / std::sin(lean) + kRadius;
+    const double slack = 2 * rounding.data().creased[0]->tolerance / std::sin(lean);
+    for (int i = 0; i < 200; ++i) {
+      const double y = kHeight * (i + 0.5) / 200;
+      const double thickness = 2 * half_foot * (1 - y / kHeight);
+      if (std::abs(y - top) < slack || thickness < 0.005 * kRadius) continue;
+      const auto hit = trace({{-5, y, 3.1}, {1, 0, 0}}, {mesh.view(), &rounding});
+      EXPECT_EQ(hit.has_value(), y < top) << y;
+    }
+  }
+}
+
 // A wedge one side of which is curved, in facets: the first two meet the other side at 36 and 48 degrees, so that the
 // one is opposite to it and the other isn't, and the first lies more than two radii from the crease.
 TEST(ThinWalls, facets_at_the_tip_of_a_wedge_are_rounded_away) {

@@ -98,6 +98,11 @@ class BallShooter {
       // Beside a concave edge what is above a face is under another one.
       if (hit->feature != Feature::face && outside > close)
         problem = fmt::format("hits within: margin {:.3g} r", outside / r_);
+      // The ball that touches there fits.
+      if (hit->feature != Feature::face) {
+        const double room = oracle_.depth(x - hit->normal * r_) / r_;
+        if (room < 0.99) problem = fmt::format("normal of no ball: room for {:.3g} r", room);
+      }
     } else {
       ++tally.passed;
     }

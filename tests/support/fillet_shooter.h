@@ -91,6 +91,12 @@ class FilletShooter {
         problem = fmt::format("hits nothing, by {:.3g} r", -by);
       if (const double by = inside_by(at(hit->t) + step); by > close)
         problem = fmt::format("hits within, by {:.3g} r", by);
+      // The ball that touches there fits outside, or inside. Sides of fillets' ends lie on the sharp face.
+      if (hit->feature != Feature::face && std::abs(inside_.depth(at(hit->t))) > 1e-4 * r_) {
+        const double side = hit->feature == Feature::fillet ? 1 : -1;
+        const double room = -side * inside_.depth(at(hit->t) + hit->normal * (side * r_)) / r_;
+        if (room < 0.99) problem = fmt::format("normal of no ball: room for {:.3g} r", room);
+      }
       if (hit->feature == Feature::fillet) {
         ++tally.fillets;
         tally.from_ends += trace_hits(ray, object(), RayStart::unknown).has_value() ? 0 : 1;
