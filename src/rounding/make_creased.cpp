@@ -134,7 +134,7 @@ class CreasedMaker {
       };
       triangles.push_back({at(0), at(1), at(2), in_.regions.region[t], t});
     }
-    return {std::move(triangles), r_};
+    return {triangles, r_};
   }
 
   // Faces that meet in smooth edges, and in convex ones, each pair in both orders; sorted.
