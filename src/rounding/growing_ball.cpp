@@ -11,8 +11,8 @@ namespace {
 // Relative to its radius: what is nearer than this to the ball it touches; the same where it seems stuck; and how far
 // from its centre other things are looked for.
 constexpr double kTouches = 1.0 / 128, kTouchesFinely = 1e-5, kFar = 2;
-// Of the radius: what rounding errors add to a distance.
-constexpr double kSlack = 1e-9;
+// Of the radius: what rounding errors add to a distance; and how far beyond what a ball asks for is gathered.
+constexpr double kSlack = 1e-9, kBesides = 0.5;
 // By the way of its centre: slower than this it grows nowhere; the same between the sides of a blade.
 constexpr double kStuck = 0.05, kStuckInBlade = 1e-4;
 // First radii are halved so often where there is no room.
@@ -127,7 +127,7 @@ class GrowingBall {
   // A ball takes many steps within a few radii: what is there is looked for once, or twice.
   void gather() {
     gathered_about_ = center_;
-    gathered_to_ = far_ + 0.5 * full_;
+    gathered_to_ = far_ + kBesides * full_;
     around_.clear();
     const Vec3d reach(gathered_to_);
     surface_.for_each_near(center_ - reach, center_ + reach, [&](const SurfaceTriangle& t) {
@@ -175,14 +175,16 @@ class GrowingBall {
     return way;
   }
 
-  // Facets that are touched where they meet, as far as touching is told, are one. Sides of a needle are no less of one
+  // Whether a ball touches both in one place, as far as touching is told.
+  [[nodiscard]] bool is_at(const Contact& a, const Contact& b) const {
+    return dot(a.direction, b.direction) > 1 - 2 * touching_;
+  }
+
+  // Facets that are touched where they meet are one. Sides of a needle are no less of one
   // where they don't meet in an edge.
   [[nodiscard]] bool are_of_blade(const Contact& a, const Contact& b) const {
     const std::array<std::uint32_t, 2> faces{a.triangle->region, b.triangle->region};
     if (surface_.is_blade(faces[0], faces[1]) || surface_.is_needle(faces)) return true;
-    const auto is_at = [&](const Contact& c, const Contact& other) {
-      return dot(c.direction, other.direction) > 1 - 2 * touching_;
-    };
     for (const Contact& c : contacts_) {
       if (!is_at(c, a)) continue;
       for (const Contact& d : contacts_) {
@@ -196,13 +198,10 @@ class GrowingBall {
   // where the blade begins. The way to the face beyond such an edge is not along its normal; facets of a curved side
   // are one.
   [[nodiscard]] bool is_at_foot(const Contact& contact) const {
-    const auto is_there = [&](const Contact& c) {
-      return dot(c.direction, contact.direction) > 1 - 2 * touching_;
-    };
     return std::ranges::any_of(contacts_, [&](const Contact& c) {
-      if (!is_there(c) || dot(c.direction, c.normal) > kOnSide) return false;
+      if (!is_at(c, contact) || dot(c.direction, c.normal) > kOnSide) return false;
       return std::ranges::none_of(contacts_, [&](const Contact& d) {
-        return is_there(d) && surface_.is_joined(c.triangle->region, d.triangle->region);
+        return is_at(d, contact) && surface_.is_joined(c.triangle->region, d.triangle->region);
       });
     });
   }
