@@ -173,7 +173,8 @@ void print_object(const ObjectReport& object, const RoundingSummary* rounding,
   if (rounding == nullptr) return;
   for (const RoundingNote& note : rounding->notes) fmt::print("              {}\n", note.text());
   if (fitting)
-    fmt::print("              a radius of {:.3g} leaves no edge sharp for that\n", *fitting);
+    fmt::print("              a radius of {:.3g} leaves no edge sharp for want of room\n",
+               *fitting);
 }
 
 // "12 triangles and 3 primitives": what there is of them.
